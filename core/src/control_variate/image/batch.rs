@@ -205,15 +205,16 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// The columns of a block's pixels.
+    /// The columns of a block's pixels, `changed` before products are made.
     #[inline(always)]
-    pub(super) fn put_columns(&self, block: usize, columns: &mut [Four]) {
+    pub(super) fn put_columns(&self, block: usize, columns: &mut [Four], changed: impl Fn(&mut Four)) {
         let terms = &self.terms;
         let places = row_at(self.places, terms.fixed(), block);
-        let functions = row_at(self.functions, terms.functions, block);
-        copy(columns, places);
-        let (out, products) = halves_mut(columns, terms.fixed() + terms.functions);
-        copy(from_mut(out, terms.fixed()), functions);
+        let (fixed, rest) = halves_mut(columns, terms.fixed());
+        let (functions, products) = halves_mut(rest, terms.functions);
+        copy(fixed, places);
+        copy(functions, row_at(self.functions, terms.functions, block));
+        fixed.iter_mut().chain(&mut *functions).for_each(changed);
         terms.multiply(places, functions, products);
     }
 
@@ -332,7 +333,6 @@ impl<'a> Batch<'a> {
         let mut arena = arena.scratch();
         let mut samples = Rows::new(functions, values, &mut arena)?;
         let mut pixels = Rows::new(columns, values, &mut arena)?;
-        let mut pixel = Pixel::new(functions, values, &mut arena)?;
         let mut apart = Apart::new(functions, values, &mut arena)?;
         let products = arena.take_lanes(if slices > 0 { Sums::len(columns, values) } else { 0 })?;
         self.set_units();
@@ -346,7 +346,7 @@ impl<'a> Batch<'a> {
                 copy(row_at_mut(self.means, values, block), samples.values);
             } else {
                 for row in 0..AT_ONCE {
-                    self.load_several((block, row), &mut samples, &mut pixel, &mut apart);
+                    self.load_several((block, row), &mut samples, &mut apart);
                 }
             }
             self.put_means(block, &mut pixels);
@@ -378,30 +378,24 @@ impl<'a> Batch<'a> {
 
     /// Reads the samples of one slot: their means, and the products of how far they are from those.
     #[inline(always)]
-    fn load_several(
-        &mut self,
-        (block, row): (usize, usize),
-        samples: &mut Rows<'_>,
-        pixel: &mut Pixel<'_>,
-        apart: &mut Apart<'_>,
-    ) {
+    fn load_several(&mut self, (block, row): (usize, usize), samples: &mut Rows<'_>, apart: &mut Apart<'_>) {
         let (call, fixed, functions) = (self.call, self.terms.fixed(), self.terms.functions);
         let inside = at(self.inside, block)[row % AT_ONCE];
         let is_full = inside == [1.0; LANES];
-        pixel.sums.empty();
-        pixel.totals.iter_mut().for_each(|sum| *sum = NONE);
+        apart.sums.empty();
+        apart.totals.iter_mut().for_each(|sum| *sum = NONE);
         for begin in (0..call.n).step_by(AT_ONCE) {
             let count = AT_ONCE.min(call.n - begin);
             call.read(self, (block, row..row + 1), begin..begin + count, samples);
             if begin == 0 {
-                pixel.firsts.iter_mut().zip(samples.values.iter()).for_each(|(first, values)| *first = values[0]);
+                apart.firsts.iter_mut().zip(samples.values.iter()).for_each(|(first, values)| *first = values[0]);
             }
             // Differences tell equal values from such as are nearly so.
-            for (values, first) in samples.values.iter_mut().zip(pixel.firsts.iter()) {
+            for (values, first) in samples.values.iter_mut().zip(apart.firsts.iter()) {
                 *values = values.map(|value| minus(&value, first));
             }
             let columns = samples.columns.iter_mut().chain(samples.values.iter_mut());
-            for (sum, four) in pixel.totals.iter_mut().zip(columns) {
+            for (sum, four) in apart.totals.iter_mut().zip(columns) {
                 four.iter_mut().skip(count).for_each(|row| *row = NONE);
                 *sum = plus(sum, &total(four));
                 lanes::keep_together();
@@ -411,10 +405,10 @@ impl<'a> Batch<'a> {
                     *values = values.map(|value| only(&inside, &value));
                 }
             }
-            pixel.sums.add(0, samples.columns, samples.values);
+            apart.sums.add(0, samples.columns, samples.values);
         }
         let inverse = 1.0 / call.n as f32;
-        let (sums, values) = halves(pixel.totals, functions);
+        let (sums, values) = halves(apart.totals, functions);
         let one = at(row_at(self.places, fixed, block), 0)[row % AT_ONCE];
         let mean = |sum: &Eight| only(&one, &sum.map(|sum| sum * inverse));
         for (out, sum) in row_at_mut(self.functions, functions, block).iter_mut().zip(sums.iter()) {
@@ -422,56 +416,36 @@ impl<'a> Batch<'a> {
             lanes::keep_together();
         }
         for (out, (sum, first)) in
-            row_at_mut(self.means, self.values, block).iter_mut().zip(values.iter().zip(pixel.firsts.iter()))
+            row_at_mut(self.means, self.values, block).iter_mut().zip(values.iter().zip(apart.firsts.iter()))
         {
             out[row] = only(&one, &plus(&mean(sum), first));
         }
-        apart.put(row, &inside, inverse, pixel, functions);
+        apart.put(row, &inside, inverse, functions);
     }
 
     /// The columns and values of a block's pixels that fits are made to.
     #[inline(always)]
     fn put_means(&self, block: usize, pixels: &mut Rows<'_>) {
-        let (terms, n) = (&self.terms, self.call.n);
-        let places = row_at(self.places, terms.fixed(), block);
-        let (fixed, rest) = halves_mut(pixels.columns, terms.fixed());
-        let (functions, products) = halves_mut(rest, terms.functions);
-        copy(fixed, places);
-        copy(functions, row_at(self.functions, terms.functions, block));
-        copy(pixels.values, row_at(self.means, self.values, block));
-        let inside = at(self.inside, block);
-        if self.leaves_out || n > 1 {
-            let root = Real::sqrt(n as f32);
-            for four in fixed.iter_mut().chain(&mut *functions).chain(pixels.values.iter_mut()) {
+        let (inside, root) = (at(self.inside, block), Real::sqrt(self.call.n as f32));
+        let changes = self.leaves_out || self.call.n > 1;
+        let change = |four: &mut Four| {
+            if changes {
                 *four = zip_four(&inside, four, |inside, value| only(inside, &value.map(|value| value * root)));
                 lanes::keep_together();
             }
-        }
-        terms.multiply(places, functions, products);
-    }
-}
-
-/// Sums over the samples of one pixel of each group.
-struct Pixel<'a> {
-    sums: Sums<'a>,
-    /// Of the functions and values themselves.
-    totals: &'a mut [Eight],
-    /// The first sample's values.
-    firsts: &'a mut [Eight],
-}
-
-impl<'a> Pixel<'a> {
-    fn new(functions: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        Ok(Self {
-            sums: Sums::new(1, functions, values, arena)?,
-            totals: arena.take_lanes(functions + values)?,
-            firsts: arena.take_lanes(values)?,
-        })
+        };
+        self.put_columns(block, pixels.columns, change);
+        copy(pixels.values, row_at(self.means, self.values, block));
+        pixels.values.iter_mut().for_each(change);
     }
 }
 
 /// Of four pixels, sums of products of how far samples are from their pixel's mean.
 struct Apart<'a> {
+    /// Over the samples of one pixel, of their products, and of functions and values themselves; and the first values.
+    sums: Sums<'a>,
+    totals: &'a mut [Eight],
+    firsts: &'a mut [Eight],
     /// Of each function and value with each function.
     functions: &'a mut [Four],
     values: &'a mut [Four],
@@ -481,6 +455,9 @@ struct Apart<'a> {
 impl<'a> Apart<'a> {
     fn new(functions: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
         Ok(Self {
+            sums: Sums::new(1, functions, values, arena)?,
+            totals: arena.take_lanes(functions + values)?,
+            firsts: arena.take_lanes(values)?,
             functions: arena.take_fours(functions * functions)?,
             values: arena.take_fours(values * functions)?,
             squares: arena.take_fours(values)?,
@@ -489,9 +466,9 @@ impl<'a> Apart<'a> {
 
     /// Sets those of one pixel: the sums of products less those of means.
     #[inline(always)]
-    fn put(&mut self, slot: usize, inside: &Eight, inverse: f32, pixel: &Pixel<'_>, width: usize) {
-        let (totals, values) = halves(pixel.totals, width);
-        let Part { gram, sides, squares } = pixel.sums.part(0);
+    fn put(&mut self, slot: usize, inside: &Eight, inverse: f32, width: usize) {
+        let (totals, values) = halves(self.totals, width);
+        let Part { gram, sides, squares } = self.sums.part(0);
         let put = |out: &mut [Four], sums: &[Eight], total: &Eight| {
             let mean = total.map(|total| total * inverse);
             for (out, (sum, other)) in out.iter_mut().zip(sums.iter().zip(totals)) {

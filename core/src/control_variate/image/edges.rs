@@ -111,8 +111,6 @@ pub(super) struct Edges<'a> {
     /// How much of the light arrives, and how much light arrives, at the points.
     shares: &'a mut [Eight],
     points: &'a mut [Eight],
-    /// 1 where the pixels of the colours that are judged have lit and dark samples, else 0.
-    pub(super) present: Eight,
 }
 
 /// The orthonormal Legendre polynomial of degree 1 of a coordinate.
@@ -175,7 +173,6 @@ impl<'a> Edges<'a> {
             most: [[NONE; Config::MAX_CHANNELS]; COLOURS],
             shares: arena.take_lanes(POINTS * POINTS)?,
             points: arena.take_lanes(POINTS * POINTS)?,
-            present: NONE,
         })
     }
 
@@ -219,7 +216,7 @@ impl<'a> Edges<'a> {
                 call.reader.put_positions(&pixels.map(|pixel| pixel * call.n + sample), 1, row * LANES, &mut x);
                 lit[row] = NONE;
                 for (channel, (value, units)) in values.iter_mut().zip(&batch.units).enumerate() {
-                    let input = call.inputs(&pixels, sample, channel);
+                    let input = call.gather(call.reader.inputs(), &pixels, (call.n, sample), channel);
                     lit[row] = lanes::zip(&lit[row], &input, |lit, input| if input > 0.0 { 1.0 } else { lit });
                     value[row] = units.scale(&input);
                 }
@@ -267,12 +264,13 @@ impl<'a> Edges<'a> {
         }
     }
 
-    /// Corrects every pixel of the colours `taken` by fits to the other of them, as the last candidate.
+    /// Corrects every pixel of the colours `taken` by fits to the other of them, as the last candidate. 1 where they
+    /// have lit and dark samples, else 0.
     #[inline(always)]
-    pub(super) fn correct(&mut self, batch: &Batch<'_>, taken: Colours, fits: &mut Fits<'_>) {
+    pub(super) fn correct(&mut self, batch: &Batch<'_>, taken: Colours, fits: &mut Fits<'_>) -> Eight {
         let (fixed, channels) = (batch.terms.fixed(), batch.call.config.channels);
         self.training.set_total(&self.all, taken);
-        self.present = self.has_both();
+        let present = self.has_both();
         for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
             let others = taken.without(colour);
             self.training.set_total(&self.all, others);
@@ -300,7 +298,7 @@ impl<'a> Edges<'a> {
                         let (Some(out), Some(a), Some(most), Some(within)) =
                             (corrections, a.get(channel), most.get(channel), within.get_mut(channel))
                         else {
-                            return;
+                            return present;
                         };
                         let integral = if is_needed { self.light(batch, (block, row), a, most) } else { NONE };
                         out[row] = self.compare(batch, (block, row), channel, &integral, &has_both, within);
@@ -317,6 +315,7 @@ impl<'a> Edges<'a> {
         for (block, value) in batch.blocks(taken).flat_map(|b| (channels..batch.values).map(move |v| (b, v))) {
             fits.corrections_mut(block, value).last_mut().into_iter().for_each(|out| *out = [NONE; AT_ONCE]);
         }
+        present
     }
 
     /// Where samples of the training set are lit, and others are not.

@@ -101,35 +101,36 @@ impl Layout<'_> {
         if self.is_single_fit() && self.n > 1 { 2 } else { self.windows.axes() + 3 }
     }
 
-    fn most_groups(&self) -> usize {
-        if self.is_joined() { 1 } else { self.windows_at_once() * (self.windows.pixels() / self.least().max(1)) }
-    }
-
-    /// Numbers that the groups of all turns take.
-    pub(super) fn groups_len(&self) -> Option<usize> {
-        let channels = self.config.channels;
-        let pixels = self.windows_at_once().checked_mul(self.windows.pixels())?;
-        let listed = if self.is_joined() { 0 } else { pixels };
-        let records = self.most_groups().checked_mul(self.record_len() + 1)?;
-        pixels.checked_mul(channels)?.checked_add(listed)?.checked_add(records)
-    }
-
     fn record_len(&self) -> usize {
         RECORD + 2 + self.config.channels + self.turns() * 2 * self.config.channels
     }
 
-    /// Room for the groups of as many windows as are worked on together.
+    /// Numbers of places, records, order and corrections, of as many windows as are worked on together.
+    fn groups_lens(&self) -> [usize; 4] {
+        let (windows, pixels) = (self.windows_at_once(), self.windows.pixels());
+        let corrections = windows.saturating_mul(pixels).saturating_mul(self.config.channels);
+        if self.is_joined() {
+            return [0, self.record_len(), 1, corrections];
+        }
+        let most = windows.saturating_mul(pixels / self.least().max(1));
+        [windows.saturating_mul(pixels), most.saturating_mul(self.record_len()), most, corrections]
+    }
+
+    /// Numbers that groups take.
+    pub(super) fn groups_len(&self) -> Option<usize> {
+        self.groups_lens().into_iter().try_fold(0, usize::checked_add)
+    }
+
     pub(super) fn groups<'a>(&self, arena: &mut Arena<'a, f32>) -> Result<Groups<'a>, Error> {
-        let pixels = self.windows_at_once() * self.windows.pixels();
-        let most = self.most_groups();
+        let [list, records, order, corrections] = self.groups_lens();
         Ok(Groups {
             count: 0,
             channels: self.config.channels,
             width: self.record_len(),
-            list: arena.take(if self.is_joined() { 0 } else { pixels })?,
-            records: arena.take(most * self.record_len())?,
-            order: arena.take(most)?,
-            corrections: arena.take(pixels * self.config.channels)?,
+            list: arena.take(list)?,
+            records: arena.take(records)?,
+            order: arena.take(order)?,
+            corrections: arena.take(corrections)?,
         })
     }
 
@@ -266,7 +267,7 @@ impl Groups<'_> {
         Some(self.numbered(bits(index)))
     }
 
-    /// What is told of a group: its gain, whether it has an error, and the error of each channel.
+    /// What is told of a group.
     pub(super) fn told(&self, group: &Group) -> &[f32] {
         part(self.records, group.index * self.width + RECORD, 2 + self.channels)
     }

@@ -83,7 +83,7 @@ impl Batch<'_> {
             let mut largest = NONE;
             for (slot, inside) in inside.iter().enumerate() {
                 let pixels = self.pixels((slot / AT_ONCE, slot % AT_ONCE));
-                let integral = call.integrals(&pixels, channel);
+                let integral = call.gather(call.image.known_integrals, &pixels, (1, 0), channel);
                 largest = lanes::zip(&largest, &only(inside, &integral), Real::max);
                 let (at, row) = place(slot, channel);
                 if let Some(out) = self.integrals.get_mut(at) {
@@ -103,8 +103,8 @@ impl Batch<'_> {
                 let (mut mean, mut known) = (NONE, NONE);
                 let pixels = self.pixels((slot / AT_ONCE, slot % AT_ONCE));
                 for sample in 0..call.n {
-                    let each = [call.inputs(&pixels, sample, channel), call.known(&pixels, sample, channel)];
-                    for (sum, value) in [&mut mean, &mut known].into_iter().zip(each) {
+                    for (sum, values) in [(&mut mean, call.reader.inputs()), (&mut known, call.image.known)] {
+                        let value = call.gather(values, &pixels, (call.n, sample), channel);
                         *sum = plus(sum, &value.map(|value| value * inverse));
                     }
                 }

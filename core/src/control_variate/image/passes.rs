@@ -62,29 +62,22 @@ impl Call<'_> {
     /// Fits to all groups: first to all of their pixels, then, where some are too bright, to the others.
     pub(super) fn fit<P: Processor>(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
         let later = if self.is_single_fit() { 0 } else { self.turns() };
-        let kinds = if self.fits_without_edges() { 0 } else { 1 }..if self.has_edges() { 2 } else { 1 };
-        for (pass, kind) in (0..=later).flat_map(|pass| kinds.clone().map(move |kind| (pass, kind))) {
+        let all = self.fits_without_edges();
+        for (pass, has_edges) in (0..=later).flat_map(|pass| [(pass, false), (pass, true)]) {
             let turn = pass.checked_sub(1);
             let mut place = 0;
-            // Groups of one size, which come one after the other, have the same.
-            let mut last = (0, 0);
             loop {
                 let mut lanes = [Group::default(); LANES];
-                let mut used = 0;
-                let mut columns = 0;
+                let (mut used, mut columns) = (0, 0);
                 // Eight, or fewer if the next have other columns.
                 while let Some(group) = groups.by_size(place).filter(|_| used < LANES) {
-                    let is_kind = group.has_edges == (kind == 1);
-                    let is_wanted = is_kind && turn.is_none_or(|turn| groups.has_limits(&group, turn));
-                    if last.0 != group.len {
-                        last = (group.len, Terms::new(self, group.len, false).columns());
-                    }
-                    if is_wanted && used > 0 && last.1 != columns {
-                        break;
-                    }
-                    place += 1;
-                    if is_wanted {
-                        columns = last.1;
+                    let is_kind = group.has_edges == has_edges && (has_edges || all);
+                    if is_kind && turn.is_none_or(|turn| groups.has_limits(&group, turn)) {
+                        let own = Terms::new(self, group.len, false).columns();
+                        if used > 0 && own != columns {
+                            break;
+                        }
+                        columns = own;
                         if self.is_joined() {
                             lanes = [group; LANES];
                         } else if let Some(lane) = lanes.get_mut(used) {
@@ -92,6 +85,7 @@ impl Call<'_> {
                         }
                         used += 1;
                     }
+                    place += 1;
                 }
                 if used == 0 {
                     break;
@@ -138,11 +132,10 @@ impl Call<'_> {
             }
             let judges = if is_last { Colours::ALL } else { Colours::HALVES[(step + 1) % 2] };
             steps::correct::<P>(&mut fits, &batch, judges);
-            let mut present = NONE;
-            if let Some(edges) = &mut edges {
-                steps::correct_edges::<P>(edges, &batch, judges, &mut fits);
-                present = edges.present;
-            }
+            let present = match &mut edges {
+                Some(edges) => steps::correct_edges::<P>(edges, &batch, judges, &mut fits),
+                None => NONE,
+            };
             let spreads = steps::spreads::<P>(choices, &batch, &fits, judges, &mut arena.scratch())?;
             let chooses = !self.is_single_fit() && (turns == 1 || !is_last);
             if chooses {

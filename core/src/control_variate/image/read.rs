@@ -27,27 +27,15 @@ impl Call<'_> {
         [low, high]
     }
 
-    /// A channel of a sample of each pixel, divided by the pixels' factors.
+    /// A channel of one of a pixel's so many rows of numbers, for eight pixels, divided by the pixels' factors.
     #[inline]
-    pub(super) fn inputs(&self, pixels: &[usize; LANES], sample: usize, channel: usize) -> Eight {
-        self.gather(self.reader.inputs(), pixels, (self.n, sample), channel)
-    }
-
-    /// What is known of it, divided likewise.
-    #[inline]
-    pub(super) fn known(&self, pixels: &[usize; LANES], sample: usize, channel: usize) -> Eight {
-        self.gather(self.image.known, pixels, (self.n, sample), channel)
-    }
-
-    /// The integral of what is known, divided likewise.
-    #[inline]
-    pub(super) fn integrals(&self, pixels: &[usize; LANES], channel: usize) -> Eight {
-        self.gather(self.image.known_integrals, pixels, (1, 0), channel)
-    }
-
-    /// One of a pixel's so many rows of numbers, for eight pixels.
-    #[inline]
-    fn gather(&self, rows: &[f32], pixels: &[usize; LANES], (each, row): (usize, usize), channel: usize) -> Eight {
+    pub(super) fn gather(
+        &self,
+        rows: &[f32],
+        pixels: &[usize; LANES],
+        (each, row): (usize, usize),
+        channel: usize,
+    ) -> Eight {
         let channels = self.config.channels;
         let mut values = pixels.map(|pixel| at(rows, (pixel * each + row) * channels + channel));
         self.divide_by_factors(pixels, channel, &mut values);

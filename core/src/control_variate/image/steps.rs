@@ -61,7 +61,7 @@ steps! {
     load_edges = Edges::load(edges: &'s mut Edges<'a>, batch: &'s Batch<'s>) -> ();
     correct_edges = Edges::correct(
         edges: &'s mut Edges<'a>, batch: &'s Batch<'s>, taken: Colours, fits: &'s mut Fits<'a>,
-    ) -> ();
+    ) -> Eight;
     spreads = Spreads::new(
         choices: Choices, batch: &'s Batch<'s>, fits: &'s Fits<'s>, taken: Colours, arena: &'s mut Arena<'a, f32>,
     ) -> Result<Spreads<'a>, Error>;
