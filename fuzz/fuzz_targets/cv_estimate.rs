@@ -6,8 +6,8 @@ use libfuzzer_sys::fuzz_target;
 use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{
-    self, Accumulator, Color, Config, Estimate, NonFinite, Optimizer, Ridge, Samples, Solver, block_workspace_len,
-    estimate_block, workspace_len,
+    self, Accumulator, Color, Config, Estimate, Image, NonFinite, Optimizer, Ridge, Samples, Solver, estimate_image,
+    image_workspace_len, workspace_len,
 };
 use noisefloor::real::Real;
 use noisefloor_tests::ESTIMATORS;
@@ -140,11 +140,12 @@ fn run<R: Real>(input: &Input) {
         Ok(_) => {}
         Err(_) => assert!(control_variate::estimate(config, samples, &mut [nan; 256]).is_err()),
     }
-    if let Ok(len) = block_workspace_len(config, input.pixels, n.checked_div(input.pixels).unwrap_or(0))
+    let image = Image::unordered(input.pixels);
+    if let Ok(len) = image_workspace_len(config, &image, n.checked_div(input.pixels).unwrap_or(0))
         && len <= MOST
     {
         let mut count = 0;
-        let result = estimate_block(config, samples, input.pixels, &mut vec![f32::NAN; len], |_, estimate| {
+        let result = estimate_image(config, &image, samples, &mut vec![f32::NAN; len], &mut |_, estimate| {
             count += 1;
             check(Ok(estimate)).ok();
         });

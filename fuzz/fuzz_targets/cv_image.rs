@@ -170,7 +170,7 @@ fn run(input: &Input) {
         Ok(len) if len <= MOST => len,
         Ok(_) => return,
         Err(_) => {
-            let never = |_, _| panic!("called on an error");
+            let never = &mut |_, _| panic!("called on an error");
             assert!(estimate_image(&config, &image, samples, &mut [nan; 256], never).is_err());
             return;
         }
@@ -178,7 +178,7 @@ fn run(input: &Input) {
     let mut workspace = vec![nan; len];
     for part in [len, len / 2] {
         let (mut count, mut sum) = (0, 0);
-        let result = estimate_image(&config, &image, samples, &mut workspace[..part], |index, estimate| {
+        let result = estimate_image(&config, &image, samples, &mut workspace[..part], &mut |index, estimate| {
             count += 1;
             sum += index;
             assert!(estimate.mean.iter().all(|mean| mean.is_finite()), "{estimate:?}");

@@ -2,9 +2,7 @@
 //! so that they are compiled once for all test files.
 
 use noisefloor::Error;
-use noisefloor::control_variate::{
-    Config, Estimate, Image, Samples, block_workspace_len, estimate_block, estimate_image, image_workspace_len,
-};
+use noisefloor::control_variate::{Config, Estimate, Image, Samples, estimate_image, image_workspace_len};
 
 /// The estimates of an image's pixels.
 pub fn image(config: &Config, image: &Image<'_>, samples: Samples<'_>) -> Result<Vec<Estimate>, Error> {
@@ -12,26 +10,14 @@ pub fn image(config: &Config, image: &Image<'_>, samples: Samples<'_>) -> Result
     let n = samples.f.len().checked_div(pixels.saturating_mul(config.channels)).unwrap_or(0);
     let mut workspace = vec![f32::NAN; image_workspace_len(config, image, n)?];
     let mut out = vec![None; estimated];
-    let result = estimate_image(config, image, samples, &mut workspace, put(&mut out));
-    finish(result, out)
+    let mut put = |index: usize, estimate| assert!(out[index].replace(estimate).is_none(), "pixel {index} twice");
+    let result = estimate_image(config, image, samples, &mut workspace, &mut put);
+    // Every pixel, or none on an error.
+    assert!(out.iter().all(|pixel| pixel.is_some() == result.is_ok()));
+    result.map(|()| out.into_iter().flatten().collect())
 }
 
 /// The estimates of pixels in no order.
 pub fn block(config: &Config, pixels: usize, samples: Samples<'_>) -> Result<Vec<Estimate>, Error> {
-    let n = samples.f.len().checked_div(pixels.saturating_mul(config.channels)).unwrap_or(0);
-    let mut workspace = vec![f32::NAN; block_workspace_len(config, pixels, n)?];
-    let mut out = vec![None; pixels];
-    let result = estimate_block(config, samples, pixels, &mut workspace, put(&mut out));
-    finish(result, out)
-}
-
-/// Each pixel once.
-fn put(out: &mut [Option<Estimate>]) -> impl FnMut(usize, Estimate) + '_ {
-    |index, estimate| assert!(out[index].replace(estimate).is_none(), "pixel {index} twice")
-}
-
-/// Every pixel, or none on an error.
-fn finish(result: Result<(), Error>, out: Vec<Option<Estimate>>) -> Result<Vec<Estimate>, Error> {
-    assert!(out.iter().all(|pixel| pixel.is_some() == result.is_ok()));
-    result.map(|()| out.into_iter().flatten().collect())
+    image(config, &Image::unordered(pixels), samples)
 }

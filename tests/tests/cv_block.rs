@@ -3,7 +3,7 @@
 use crate::cv_support::*;
 use noisefloor::Error;
 use noisefloor::control_variate::{
-    Config, Estimate, Estimator, NonFinite, Samples, block_workspace_len, estimate_block,
+    Config, Estimate, Estimator, Image, NonFinite, Samples, estimate_image, image_workspace_len,
 };
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared;
@@ -138,24 +138,24 @@ fn channels_are_separate() {
 fn errors() {
     let config = Config::new(1, 1, 1);
     let run = |config: &Config, u: &[f32], f: &[f32], pixels: usize, len: usize| {
-        let never = |_, _| panic!("called on an error");
-        estimate_block(config, Samples::new(u, f), pixels, &mut vec![0.0f32; len], never)
+        let never = &mut |_, _| panic!("called on an error");
+        estimate_image(config, &Image::unordered(pixels), Samples::new(u, f), &mut vec![0.0; len], never)
     };
     let (u, f) = ([0.5; 6], [1.0; 6]);
-    let len = block_workspace_len(&config, 3, 2).unwrap();
+    let len = image_workspace_len(&config, &Image::unordered(3), 2).unwrap();
     assert_eq!(run(&config, &u, &f, 4, 1000), Err(Error::Range));
     assert_eq!(run(&config, &u, &f, 7, 1000), Err(Error::Range));
-    assert_eq!(run(&config, &u, &f, 0, 1000), Err(Error::NoSamples));
+    assert_eq!(run(&config, &u, &f, 0, 1000), Err(Error::Range));
     assert_eq!(run(&config, &[], &[], 3, 1000), Err(Error::NoSamples));
     assert_eq!(run(&config, &u[..5], &f, 3, 1000), Err(Error::Range));
     assert_eq!(run(&config, &u, &f, 3, len - 1), Err(Error::Memory));
     let skip = Config { non_finite: NonFinite::Skip, ..config };
     assert_eq!(run(&skip, &u, &f, 3, 1000), Err(Error::Unsupported));
     assert_eq!(run(&Config::new(0, 1, 1), &u, &f, 3, 1000), Err(Error::Range));
-    assert_eq!(block_workspace_len(&config, usize::MAX, 2), Err(Error::Memory));
+    assert_eq!(image_workspace_len(&config, &Image::unordered(usize::MAX), 2), Err(Error::Range));
     for estimator in [Estimator::LeastSquares, Estimator::GradientDescent, Estimator::Incremental] {
         let other = Config { estimator, ..config };
         assert_eq!(run(&other, &u, &f, 3, 1000), Err(Error::Unsupported));
-        assert_eq!(block_workspace_len(&other, 3, 2), Err(Error::Unsupported));
+        assert_eq!(image_workspace_len(&other, &Image::unordered(3), 2), Err(Error::Unsupported));
     }
 }

@@ -7,8 +7,7 @@ use crate::cv_support::*;
 use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{
-    self, Config, Estimate, Estimator, NonFinite, Optimizer, Regressor, Ridge, Samples, Solver, block_workspace_len,
-    estimate_block,
+    self, Config, Estimate, Estimator, NonFinite, Optimizer, Regressor, Ridge, Samples, Solver,
 };
 use noisefloor_tests::ESTIMATORS;
 use noisefloor_tests::oracle::{Regression, RobustRule};
@@ -430,10 +429,7 @@ fn not_finite_is_an_error() {
                 }
             }
             let config = Config::new(2, 2, 1);
-            let mut workspace = vec![0.0; block_workspace_len(&config, 3, 4).unwrap()];
-            let called = |_, _| panic!("no estimate on an error");
-            let result = estimate_block(&config, Samples::new(&u, &bad_f), 3, &mut workspace, called);
-            assert_eq!(result, Err(Error::NotFinite));
+            assert_eq!(shared::block(&config, 3, Samples::new(&u, &bad_f)), Err(Error::NotFinite));
             let mut start = [0.25; 5];
             let samples = Samples::new(&bad_u, &f);
             let result = control_variate::gradient_descent(&config, samples, &mut start, &mut [0.0; 4096]);

@@ -297,7 +297,7 @@ fn unordered_limit() {
         if !fits {
             // With any workspace, and in rows too.
             let of = Image { surfaces: &surfaces, width: 205, height: 5, ..Image::unordered(pixels) };
-            let never = |_, _| panic!("called on an error");
+            let never = &mut |_, _| panic!("called on an error");
             assert_eq!(estimate_image(&config, &of, samples, &mut vec![0.0; 1 << 20], never), Err(Error::Range));
         }
     }
@@ -310,7 +310,7 @@ fn errors() {
     let config = Config::new(2, 1, 1);
     let (u, f) = ([0.5; 24], [1.0; 12]);
     let run = |config: &Config, image: Image<'_>, u: &[f32], f: &[f32], len: usize| {
-        let never = |_, _| panic!("called on an error");
+        let never = &mut |_, _| panic!("called on an error");
         estimate_image(config, &image, Samples::new(u, f), &mut vec![f32::NAN; len], never)
     };
     let of = Image::new(3, 2);

@@ -4,8 +4,8 @@ use crate::cv_support::*;
 use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{
-    self, Color, Config, Estimate, Estimator, NonFinite, Optimizer, Regressor, Ridge, Samples, Solver,
-    block_workspace_len, estimate_block, workspace_len,
+    self, Color, Config, Estimate, Estimator, Image, NonFinite, Optimizer, Regressor, Ridge, Samples, Solver,
+    estimate_image, image_workspace_len, workspace_len,
 };
 use noisefloor::real::Real;
 use noisefloor_tests::ESTIMATORS;
@@ -169,11 +169,12 @@ fn knock<R: Real>(config: &Config, samples: Samples<'_>, rng: &mut SplitMix64) {
         }
     }
     let pixels = 1 + rng.below(4);
-    if let Ok(len) = block_workspace_len(config, pixels, n / pixels)
+    let image = Image::unordered(pixels);
+    if let Ok(len) = image_workspace_len(config, &image, n / pixels)
         && len < 1 << 20
     {
         let mut count = 0;
-        let result = estimate_block(config, samples, pixels, &mut vec![f32::NAN; len], |_, estimate| {
+        let result = estimate_image(config, &image, samples, &mut vec![f32::NAN; len], &mut |_, estimate| {
             count += 1;
             check(Ok(estimate)).unwrap();
         });

@@ -6,8 +6,8 @@
 
 use crate::cv_support::*;
 use noisefloor::control_variate::{
-    Config, Estimate, Estimator, NonFinite, Ridge, Samples, Solver, block_workspace_len, estimate, estimate_block,
-    workspace_len,
+    Config, Estimate, Estimator, Image, NonFinite, Ridge, Samples, Solver, estimate, estimate_image,
+    image_workspace_len, workspace_len,
 };
 use noisefloor::real::Real;
 use noisefloor_tests::ESTIMATORS;
@@ -147,13 +147,14 @@ fn incremental_prefixes() {
 
 /// The estimates of every pixel of blocks of `pixels` pixels with `n` samples.
 fn blocks(config: &Config, integrand: &Integrand, pixels: usize, n: usize, repetitions: usize, seed: u64) -> Moments {
-    let mut workspace = vec![0.0; block_workspace_len(config, pixels, n).unwrap()];
+    let image = Image::unordered(pixels);
+    let mut workspace = vec![0.0; image_workspace_len(config, &image, n).unwrap()];
     let mut moments = Moments::default();
     sets(integrand, pixels * n, repetitions, seed, |u, f| {
         // Estimates of one block are not independent; their mean is one observation.
         let mut total = 0.0;
-        let out = |_, estimate: Estimate| total += f64::from(estimate.mean[0]);
-        estimate_block(config, Samples::new(u, f), pixels, &mut workspace, out).unwrap();
+        let mut out = |_, estimate: Estimate| total += f64::from(estimate.mean[0]);
+        estimate_image(config, &image, Samples::new(u, f), &mut workspace, &mut out).unwrap();
         moments.add(total / pixels as f64);
     });
     moments

@@ -27,8 +27,6 @@ pub use accumulator::Accumulator;
 pub use batch::{estimate, estimate_inlined, workspace_len};
 pub use config::{Color, Config, Estimate, Estimator, NonFinite, Optimizer, Ridge, Solver};
 pub use fit::descent::estimate_from as gradient_descent;
-pub use image::{
-    Image, Rectangle, block_workspace_len, estimate_block, estimate_image, estimate_image_by, image_workspace_len,
-};
+pub use image::{Image, Rectangle, estimate_image, estimate_image_by, image_workspace_len};
 pub use regressor::Regressor;
 pub use samples::Samples;

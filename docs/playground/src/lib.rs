@@ -3,7 +3,7 @@
 
 mod scene;
 
-use noisefloor::control_variate::{Config, Image, Samples, estimate_image, image_workspace_len};
+use noisefloor::control_variate::{Config, Estimate, Image, Samples, estimate_image, image_workspace_len};
 use noisefloor::sampler::{Sampler, table};
 use scene::{Ball, Hit, NO_BALLS, NOTHING, PHASES, PIXELS, SIDE};
 
@@ -141,7 +141,8 @@ pub extern "C" fn render(which: usize, sampler: u32, samples: usize, frame: u32,
         return 0;
     };
     let given = Samples::new(&page.u[..2 * samples * PIXELS], &page.f[..samples * PIXELS]);
-    let done = estimate_image(&config, &shown, given, workspace, |pixel, estimate| image[pixel] = estimate.mean[0]);
+    let mut put = |pixel: usize, estimate: Estimate| image[pixel] = estimate.mean[0];
+    let done = estimate_image(&config, &shown, given, workspace, &mut put);
     u32::from(done.is_ok())
 }
 

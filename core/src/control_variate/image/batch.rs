@@ -8,8 +8,8 @@ use super::call::{Call, Layout};
 use super::groups::{Group, Groups, Place};
 use super::pixels::Image;
 use super::products::{
-    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sums, add_products, only, plus, plus_four, times, total,
-    zip_four,
+    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sums, add_products, minus, only, plus, plus_four,
+    product, times, total, zip_four,
 };
 use super::terms::{MAX_AXES, Terms};
 use crate::arena::Arena;
@@ -32,8 +32,8 @@ const MOST: i32 = 56;
 /// What the lanes' values of a channel are divided by, and what is subtracted then.
 #[derive(Clone, Copy)]
 pub(super) struct Units {
-    /// Powers of two.
-    pub(super) exponents: [i32; LANES],
+    /// Powers of two, and 1 over them.
+    pub(super) powers: Eight,
     scales: Eight,
     offsets: Eight,
     /// The largest values, not yet divided.
@@ -42,6 +42,8 @@ pub(super) struct Units {
 
 /// Eight groups, or eight parts of one.
 pub(super) struct Batch<'a> {
+    pub(super) call: &'a Call<'a>,
+    pub(super) terms: Terms,
     pub(super) lanes: [Group; LANES],
     pub(super) is_joined: bool,
     /// Whether the slots of a block are of one colour.
@@ -103,20 +105,14 @@ impl Units {
     /// A value in units. Only what no fit is made to, or is known of it, is far beyond them; its square fits too.
     #[inline]
     pub(super) fn apply(&self, value: &Eight) -> Eight {
-        lanes::zip(&self.scale(value), &self.offsets, |value, offset| value - offset)
+        minus(&self.scale(value), &self.offsets)
     }
 
     /// The same with the zero at 0.
     #[inline]
     pub(super) fn scale(&self, value: &Eight) -> Eight {
         let limited = lanes::zip(value, &self.limits, |value, most| Real::min(Real::max(value, -most), most));
-        lanes::zip(&limited, &self.scales, |value, scale| value * scale)
-    }
-
-    /// Two to the powers of the exponents.
-    #[inline]
-    pub(super) fn powers(&self) -> Eight {
-        self.exponents.map(power_of_two)
+        product(&limited, &self.scales)
     }
 }
 
@@ -128,8 +124,8 @@ fn power_of_two(exponent: i32) -> f32 {
 impl<'a> Batch<'a> {
     /// Room for groups of which none is larger than the first.
     pub(super) fn new(
-        call: &Call<'_>,
-        terms: &Terms,
+        call: &'a Call<'a>,
+        terms: Terms,
         lanes: [Group; LANES],
         arena: &mut Arena<'a, f32>,
     ) -> Result<Self, Error> {
@@ -139,10 +135,11 @@ impl<'a> Batch<'a> {
         let (blocks, [between, within]) = (blocks(call, slots), parts(call));
         let known = if call.image.has_known() { blocks * channels } else { 0 };
         Ok(Self {
+            call,
             lanes,
             is_joined: call.is_joined(),
             has_colours: call.has_colours(),
-            units: [Units { exponents: [0; LANES], scales: NONE, offsets: NONE, limits: NONE }; Config::MAX_CHANNELS],
+            units: [Units { powers: NONE, scales: NONE, offsets: NONE, limits: NONE }; Config::MAX_CHANNELS],
             leaves_out: false,
             numbers: arena.take_fours(blocks)?,
             places: arena.take_fours(blocks * terms.fixed())?,
@@ -154,8 +151,9 @@ impl<'a> Batch<'a> {
             values,
             means: arena.take_fours(blocks * values)?,
             functions: arena.take_fours(blocks * terms.functions)?,
-            between: Sums::sliced(between, terms.slices.max(1), columns, values, arena)?,
+            between: Sums::new(between * terms.slices.max(1), columns, values, arena)?,
             within: Sums::new(within, columns, values, arena)?,
+            terms,
         })
     }
 
@@ -164,6 +162,12 @@ impl<'a> Batch<'a> {
     pub(super) fn blocks(&self, colours: Colours) -> impl Iterator<Item = usize> + use<> {
         let has_colours = self.has_colours;
         (0..self.inside.len()).filter(move |&block| !has_colours || colours.has(block))
+    }
+
+    /// A sum over all pixels of a group, by those of its lanes.
+    #[inline]
+    pub(super) fn joined(&self, sum: &Eight) -> Eight {
+        if self.is_joined { [lanes::sum(sum); LANES] } else { *sum }
     }
 
     /// Of which colour a slot is.
@@ -192,8 +196,7 @@ impl<'a> Batch<'a> {
     /// Zero in the lanes of a block's slots without a pixel.
     #[inline(always)]
     pub(super) fn empty_missing<'f>(&self, block: usize, columns: impl Iterator<Item = &'f mut Four>) {
-        let fixed = self.places.len() / self.inside.len().max(1);
-        let Some(one) = row_at(self.places, fixed, block).first() else { return };
+        let Some(one) = row_at(self.places, self.terms.fixed(), block).first() else { return };
         if *one != [[1.0; LANES]; AT_ONCE] {
             for column in columns {
                 *column = zip_four(one, column, only);
@@ -202,25 +205,28 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// The columns of a block's pixels.
+    /// The columns of a block's pixels, `changed` before products are made.
     #[inline(always)]
-    pub(super) fn put_columns(&self, terms: &Terms, block: usize, columns: &mut [Four]) {
+    pub(super) fn put_columns(&self, block: usize, columns: &mut [Four], changed: impl Fn(&mut Four)) {
+        let terms = &self.terms;
         let places = row_at(self.places, terms.fixed(), block);
-        let functions = row_at(self.functions, terms.functions, block);
-        copy(columns, places);
-        let (out, products) = halves_mut(columns, terms.fixed() + terms.functions);
-        copy(from_mut(out, terms.fixed()), functions);
+        let (fixed, rest) = halves_mut(columns, terms.fixed());
+        let (functions, products) = halves_mut(rest, terms.functions);
+        copy(fixed, places);
+        copy(functions, row_at(self.functions, terms.functions, block));
+        fixed.iter_mut().chain(&mut *functions).for_each(changed);
         terms.multiply(places, functions, products);
     }
 
     /// Where the lanes' pixels are, and between what values theirs lie.
     #[inline(always)]
-    pub(super) fn survey(&mut self, call: &Call<'_>, groups: &Groups<'_>, terms: &Terms) {
-        let (fixed, channels) = (terms.fixed(), call.config.channels);
+    pub(super) fn survey(&mut self, groups: &Groups<'_>) {
+        let call = self.call;
+        let (fixed, channels) = (self.terms.fixed(), call.config.channels);
         let axes = call.windows.used_axes();
         let scales = axes.map(|axis| (SQRT_3 / call.windows.extent[axis % MAX_AXES].max(1) as f64) as f32);
         let [width, height] = [call.windows.given.width, call.windows.given.height].map(|extent| extent as u32);
-        let corners = self.lanes.map(|group| call.corner(groups, &group) as u32);
+        let corners = self.lanes.map(|group| call.corner(group.window) as u32);
         let members = self.lanes.map(|group| groups.members(&group));
         let mut other = None;
         for block in 0..self.inside.len() {
@@ -265,7 +271,8 @@ impl<'a> Batch<'a> {
     }
 
     /// Keeps pixels beyond their group's limits out of all fits.
-    pub(super) fn leave_out<'l>(&mut self, channels: usize, limits: impl Fn(&Group) -> &'l [f32]) {
+    pub(super) fn leave_out<'l>(&mut self, limits: impl Fn(&Group) -> &'l [f32]) {
+        let channels = self.call.config.channels;
         self.leaves_out = true;
         for channel in 0..channels {
             let (mut lowest, mut highest) = (NONE, NONE);
@@ -288,7 +295,8 @@ impl<'a> Batch<'a> {
 
     /// As for one pixel's samples: the zero at a value, the unit near the largest.
     #[inline]
-    fn set_units(&mut self, channels: usize) {
+    fn set_units(&mut self) {
+        let channels = self.call.config.channels;
         for (channel, units) in self.units.iter_mut().enumerate().take(channels) {
             let mut largest = NONE;
             let mut first = [f32::INFINITY; LANES];
@@ -308,9 +316,10 @@ impl<'a> Batch<'a> {
                 first = [first.into_iter().find(|&first| first < f32::INFINITY).unwrap_or(0.0); LANES];
             }
             for l in 0..LANES {
-                units.exponents[l] = Real::exponent(largest[l]).clamp(-126, 126);
-                units.scales[l] = power_of_two(-units.exponents[l]);
-                units.limits[l] = power_of_two(units.exponents[l] + MOST);
+                let exponent = Real::exponent(largest[l]).clamp(-126, 126);
+                units.powers[l] = power_of_two(exponent);
+                units.scales[l] = power_of_two(-exponent);
+                units.limits[l] = power_of_two(exponent + MOST);
                 units.offsets[l] = if first[l] < f32::INFINITY { first[l] * units.scales[l] } else { 0.0 };
             }
         }
@@ -318,45 +327,46 @@ impl<'a> Batch<'a> {
 
     /// Reads all samples and sums their products.
     #[inline(always)]
-    pub(super) fn load(&mut self, call: &Call<'_>, terms: &Terms, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+    pub(super) fn load(&mut self, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+        let (call, values, slices) = (self.call, self.values, self.terms.slices);
+        let (columns, functions, fixed) = (self.terms.columns(), self.terms.functions, self.terms.fixed());
         let mut arena = arena.scratch();
-        let mut samples = Rows::new(terms.functions, self.values, &mut arena)?;
-        let mut pixels = Rows::new(terms.columns(), self.values, &mut arena)?;
-        let mut pixel = Pixel::new(terms.functions, self.values, &mut arena)?;
-        let mut apart = Apart::new(terms.functions, self.values, &mut arena)?;
-        let products = arena.take_lanes(if terms.slices > 0 { Sums::len(terms.columns(), self.values) } else { 0 })?;
-        self.set_units(call.config.channels);
+        let mut samples = Rows::new(functions, values, &mut arena)?;
+        let mut pixels = Rows::new(columns, values, &mut arena)?;
+        let mut apart = Apart::new(functions, values, &mut arena)?;
+        let products = arena.take_lanes(if slices > 0 { Sums::len(columns, values) } else { 0 })?;
+        self.set_units();
         self.between.empty();
         self.within.empty();
         for block in 0..self.inside.len() {
             let part = if self.has_colours { block % COLOURS } else { 0 };
             if call.n == 1 {
                 call.read(self, (block, 0..AT_ONCE), 0..1, &mut samples);
-                copy(row_at_mut(self.functions, terms.functions, block), samples.columns);
-                copy(row_at_mut(self.means, self.values, block), samples.values);
+                copy(row_at_mut(self.functions, functions, block), samples.columns);
+                copy(row_at_mut(self.means, values, block), samples.values);
             } else {
                 for row in 0..AT_ONCE {
-                    self.load_several(call, terms, (block, row), &mut samples, &mut pixel, &mut apart);
+                    self.load_several((block, row), &mut samples, &mut apart);
                 }
             }
-            self.put_means(call, terms, block, &mut pixels);
+            self.put_means(block, &mut pixels);
             if let Some(slices) = self.slices.get_mut(block) {
                 let at = call.basis.slices_at(&samples.x);
                 for (slices, at) in slices.iter_mut().zip(at.as_chunks::<LANES>().0) {
                     *slices = at.map(|slice| slice as f32);
                 }
-                self.between.add_sliced(part, slices, pixels.columns, pixels.values, products);
+                self.between.add_sliced(part * self.terms.slices, slices, pixels.columns, pixels.values, products);
             } else {
                 self.between.add(part, pixels.columns, pixels.values);
             }
             if call.n > 1 {
                 let inside = at(self.inside, block);
                 let mut places = [[NONE; AT_ONCE]; MAX_FIXED];
-                for (out, place) in places.iter_mut().zip(row_at(self.places, terms.fixed(), block)) {
+                for (out, place) in places.iter_mut().zip(row_at(self.places, fixed, block)) {
                     *out = zip_four(&inside, place, only);
                 }
-                apart.mirror(terms.functions);
-                self.within.add_apart(part, terms, first(&places, terms.fixed()), &apart);
+                apart.mirror(functions);
+                self.within.add_apart(part, &self.terms, first(&places, fixed), &apart);
             }
         }
         if self.is_joined {
@@ -368,31 +378,24 @@ impl<'a> Batch<'a> {
 
     /// Reads the samples of one slot: their means, and the products of how far they are from those.
     #[inline(always)]
-    fn load_several(
-        &mut self,
-        call: &Call<'_>,
-        terms: &Terms,
-        (block, row): (usize, usize),
-        samples: &mut Rows<'_>,
-        pixel: &mut Pixel<'_>,
-        apart: &mut Apart<'_>,
-    ) {
+    fn load_several(&mut self, (block, row): (usize, usize), samples: &mut Rows<'_>, apart: &mut Apart<'_>) {
+        let (call, fixed, functions) = (self.call, self.terms.fixed(), self.terms.functions);
         let inside = at(self.inside, block)[row % AT_ONCE];
         let is_full = inside == [1.0; LANES];
-        pixel.sums.empty();
-        pixel.totals.iter_mut().for_each(|sum| *sum = NONE);
+        apart.sums.empty();
+        apart.totals.iter_mut().for_each(|sum| *sum = NONE);
         for begin in (0..call.n).step_by(AT_ONCE) {
             let count = AT_ONCE.min(call.n - begin);
             call.read(self, (block, row..row + 1), begin..begin + count, samples);
             if begin == 0 {
-                pixel.firsts.iter_mut().zip(samples.values.iter()).for_each(|(first, values)| *first = values[0]);
+                apart.firsts.iter_mut().zip(samples.values.iter()).for_each(|(first, values)| *first = values[0]);
             }
             // Differences tell equal values from such as are nearly so.
-            for (values, first) in samples.values.iter_mut().zip(pixel.firsts.iter()) {
-                *values = values.map(|value| lanes::zip(&value, first, |value, first| value - first));
+            for (values, first) in samples.values.iter_mut().zip(apart.firsts.iter()) {
+                *values = values.map(|value| minus(&value, first));
             }
             let columns = samples.columns.iter_mut().chain(samples.values.iter_mut());
-            for (sum, four) in pixel.totals.iter_mut().zip(columns) {
+            for (sum, four) in apart.totals.iter_mut().zip(columns) {
                 four.iter_mut().skip(count).for_each(|row| *row = NONE);
                 *sum = plus(sum, &total(four));
                 lanes::keep_together();
@@ -402,66 +405,47 @@ impl<'a> Batch<'a> {
                     *values = values.map(|value| only(&inside, &value));
                 }
             }
-            pixel.sums.add(0, samples.columns, samples.values);
+            apart.sums.add(0, samples.columns, samples.values);
         }
         let inverse = 1.0 / call.n as f32;
-        let (sums, values) = halves(pixel.totals, terms.functions);
-        let one = at(row_at(self.places, terms.fixed(), block), 0)[row % AT_ONCE];
+        let (sums, values) = halves(apart.totals, functions);
+        let one = at(row_at(self.places, fixed, block), 0)[row % AT_ONCE];
         let mean = |sum: &Eight| only(&one, &sum.map(|sum| sum * inverse));
-        for (out, sum) in row_at_mut(self.functions, terms.functions, block).iter_mut().zip(sums.iter()) {
+        for (out, sum) in row_at_mut(self.functions, functions, block).iter_mut().zip(sums.iter()) {
             out[row] = mean(sum);
             lanes::keep_together();
         }
         for (out, (sum, first)) in
-            row_at_mut(self.means, self.values, block).iter_mut().zip(values.iter().zip(pixel.firsts.iter()))
+            row_at_mut(self.means, self.values, block).iter_mut().zip(values.iter().zip(apart.firsts.iter()))
         {
             out[row] = only(&one, &plus(&mean(sum), first));
         }
-        apart.put(row, &inside, inverse, pixel, terms.functions);
+        apart.put(row, &inside, inverse, functions);
     }
 
     /// The columns and values of a block's pixels that fits are made to.
     #[inline(always)]
-    fn put_means(&self, call: &Call<'_>, terms: &Terms, block: usize, pixels: &mut Rows<'_>) {
-        let places = row_at(self.places, terms.fixed(), block);
-        let (fixed, rest) = halves_mut(pixels.columns, terms.fixed());
-        let (functions, products) = halves_mut(rest, terms.functions);
-        copy(fixed, places);
-        copy(functions, row_at(self.functions, terms.functions, block));
-        copy(pixels.values, row_at(self.means, self.values, block));
-        let inside = at(self.inside, block);
-        if self.leaves_out || call.n > 1 {
-            let root = Real::sqrt(call.n as f32);
-            for four in fixed.iter_mut().chain(&mut *functions).chain(pixels.values.iter_mut()) {
+    fn put_means(&self, block: usize, pixels: &mut Rows<'_>) {
+        let (inside, root) = (at(self.inside, block), Real::sqrt(self.call.n as f32));
+        let changes = self.leaves_out || self.call.n > 1;
+        let change = |four: &mut Four| {
+            if changes {
                 *four = zip_four(&inside, four, |inside, value| only(inside, &value.map(|value| value * root)));
                 lanes::keep_together();
             }
-        }
-        terms.multiply(places, functions, products);
-    }
-}
-
-/// Sums over the samples of one pixel of each group.
-struct Pixel<'a> {
-    sums: Sums<'a>,
-    /// Of the functions and values themselves.
-    totals: &'a mut [Eight],
-    /// The first sample's values.
-    firsts: &'a mut [Eight],
-}
-
-impl<'a> Pixel<'a> {
-    fn new(functions: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        Ok(Self {
-            sums: Sums::new(1, functions, values, arena)?,
-            totals: arena.take_lanes(functions + values)?,
-            firsts: arena.take_lanes(values)?,
-        })
+        };
+        self.put_columns(block, pixels.columns, change);
+        copy(pixels.values, row_at(self.means, self.values, block));
+        pixels.values.iter_mut().for_each(change);
     }
 }
 
 /// Of four pixels, sums of products of how far samples are from their pixel's mean.
 struct Apart<'a> {
+    /// Over the samples of one pixel, of their products, and of functions and values themselves; and the first values.
+    sums: Sums<'a>,
+    totals: &'a mut [Eight],
+    firsts: &'a mut [Eight],
     /// Of each function and value with each function.
     functions: &'a mut [Four],
     values: &'a mut [Four],
@@ -471,6 +455,9 @@ struct Apart<'a> {
 impl<'a> Apart<'a> {
     fn new(functions: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
         Ok(Self {
+            sums: Sums::new(1, functions, values, arena)?,
+            totals: arena.take_lanes(functions + values)?,
+            firsts: arena.take_lanes(values)?,
             functions: arena.take_fours(functions * functions)?,
             values: arena.take_fours(values * functions)?,
             squares: arena.take_fours(values)?,
@@ -479,9 +466,9 @@ impl<'a> Apart<'a> {
 
     /// Sets those of one pixel: the sums of products less those of means.
     #[inline(always)]
-    fn put(&mut self, slot: usize, inside: &Eight, inverse: f32, pixel: &Pixel<'_>, width: usize) {
-        let (totals, values) = halves(pixel.totals, width);
-        let Part { gram, sides, squares } = pixel.sums.part(0);
+    fn put(&mut self, slot: usize, inside: &Eight, inverse: f32, width: usize) {
+        let (totals, values) = halves(self.totals, width);
+        let Part { gram, sides, squares } = self.sums.part(0);
         let put = |out: &mut [Four], sums: &[Eight], total: &Eight| {
             let mean = total.map(|total| total * inverse);
             for (out, (sum, other)) in out.iter_mut().zip(sums.iter().zip(totals)) {

@@ -55,21 +55,18 @@ impl Highest {
     }
 }
 
-/// What values of a channel fits are made to, lowest and highest, in each lane; None where all are.
-pub(super) type Limits = [Option<[f32; 2]>; LANES];
-
-/// How far values of a channel may be from those of the `judges`, where any is too far. `trust` is that in the mean.
+/// The lowest and the highest value of a channel that fits are made to, in each lane: near those of the `judges`, where
+/// any is too far; else infinite. `trust` is that in the mean.
 /// Where a judge itself is too far and fits are trusted, they explain it, and keep such values.
 #[inline(always)]
-pub(super) fn limits(batch: &Batch<'_>, channels: usize, channel: usize, judges: Colours, trust: &Eight) -> Limits {
+pub(super) fn limits(batch: &Batch<'_>, channel: usize, judges: Colours, trust: &Eight) -> [[f32; 2]; LANES] {
+    let channels = batch.call.config.channels;
     let is_halved = judges != Colours::ALL;
     let mut counts = NONE;
     for inside in batch.blocks(judges).filter_map(|block| batch.inside.get(block)).flatten() {
         counts = plus(&counts, inside);
     }
-    if batch.is_joined {
-        counts = [lanes::sum(&counts); LANES];
-    }
+    let counts = batch.joined(&counts);
     let aside = counts.map(|count| (count as usize).div_ceil(SHARE).min(MOST));
     let kept = 1 + aside.into_iter().fold(0, usize::max);
     let (mut highest, mut lowest) = (Highest::new(), Highest::new());
@@ -96,7 +93,7 @@ pub(super) fn limits(batch: &Batch<'_>, channels: usize, channel: usize, judges:
             highest.join(kept);
         }
     }
-    let mut limits = [None; LANES];
+    let mut limits = [[f32::NEG_INFINITY, f32::INFINITY]; LANES];
     for l in 0..LANES {
         let is_doubted = trust[l] < DOUBT;
         if counts[l] < FEWEST || is_doubted && !is_halved {
@@ -109,7 +106,7 @@ pub(super) fn limits(batch: &Batch<'_>, channels: usize, channel: usize, judges:
         let is_far = is_beyond(-lowest.below(0, l), highest.below(0, l));
         let others = is_halved && is_beyond(-least.below(0, l), most.below(0, l));
         if if is_doubted { others && !is_far } else { others || is_far } {
-            limits[l] = Some(near);
+            limits[l] = near;
         }
     }
     limits

@@ -13,6 +13,8 @@ pub(super) struct Layout<'a> {
     pub(super) config: &'a Config,
     pub(super) image: &'a Image<'a>,
     pub(super) windows: Windows,
+    /// Pixels that are given, in all frames.
+    pub(super) pixels: usize,
     pub(super) shape: Shape,
     /// Samples of a pixel.
     pub(super) n: usize,
@@ -50,7 +52,7 @@ impl Layout<'_> {
 
     /// Whether groups without an edge of a shadow are corrected: not by edges alone.
     pub(super) fn fits_without_edges(&self) -> bool {
-        self.image.has_known() || !self.terms(self.windows.pixels()).ends.is_empty()
+        self.image.has_known() || !Terms::new(self, self.windows.pixels(), false).ends.is_empty()
     }
 
     /// In how many turns pixels are chosen for.
@@ -66,15 +68,6 @@ impl Layout<'_> {
     /// Whether colours, or halves of them, are corrected by fits to others.
     pub(super) fn has_colours(&self) -> bool {
         self.n > 1 || self.has_halves()
-    }
-
-    /// Which columns fits to so many pixels have.
-    pub(super) fn terms(&self, pixels: usize) -> Terms {
-        if self.is_known_alone() {
-            return Terms::without_fits(self.windows.axes());
-        }
-        let samples = pixels.saturating_mul(self.n);
-        Terms::new(self.config, &self.shape, self.windows.axes(), samples, self.is_single_fit())
     }
 
     /// Whether the standard error is that of the group's estimates, instead of the pixel's plain mean times the root of

@@ -5,7 +5,8 @@ use super::batch::{Batch, MAX_FIXED};
 use super::call::Layout;
 use super::fit::Fits;
 use super::products::{
-    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, add_products, combine, only, plus, plus_four, total, zip_four,
+    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, add_products, combine, minus, only, plus, plus_four, product, total,
+    zip_four,
 };
 use super::terms::Terms;
 use crate::arena::Arena;
@@ -143,14 +144,12 @@ impl<'a> Spreads<'a> {
     #[inline(always)]
     pub(super) fn new(
         choices: Choices,
-        terms: &Terms,
         batch: &Batch<'_>,
         fits: &Fits<'_>,
         taken: Colours,
         arena: &mut Arena<'a, f32>,
     ) -> Result<Self, Error> {
-        let fixed = terms.fixed();
-        let joined = |sum: &Eight| if batch.is_joined { [lanes::sum(sum); LANES] } else { *sum };
+        let fixed = batch.terms.fixed();
         let all = choices.channels * choices.count;
         let [sums, within] = [arena.take_lanes(CHOSEN * all)?, arena.take_lanes(CHOSEN * all)?];
         let [squares, trends] = [arena.take_lanes(all)?, arena.take_lanes(all * fixed)?];
@@ -177,7 +176,7 @@ impl<'a> Spreads<'a> {
                 }
             }
         }
-        factor.iter_mut().for_each(|sum| *sum = joined(sum));
+        factor.iter_mut().for_each(|sum| *sum = batch.joined(sum));
         let pixels = factor[0];
         ldlt::factor_each(&mut factor, fixed);
         let mut freedom = pixels;
@@ -188,7 +187,7 @@ impl<'a> Spreads<'a> {
             });
         }
         for trend in rows_mut(trends, fixed) {
-            trend.iter_mut().for_each(|sum| *sum = joined(sum));
+            trend.iter_mut().for_each(|sum| *sum = batch.joined(sum));
             ldlt::solve_each(&factor, trend);
         }
         // The difference of the sums of squares would lose the digits that matter beside a strong trend.
@@ -201,7 +200,7 @@ impl<'a> Spreads<'a> {
                 let trends = rows(row_at(trends, choices.count * fixed, channel), fixed);
                 for ((estimate, sum), trend) in estimates.iter().zip(sums).zip(trends) {
                     let trend = combine([NONE; AT_ONCE], places, trend);
-                    let rest = zip_four(estimate, &trend, |estimate, trend| lanes::zip(estimate, trend, |a, b| a - b));
+                    let rest = zip_four(estimate, &trend, |estimate, trend| minus(estimate, trend));
                     let rest = zip_four(inside, &rest, only);
                     for (row, rest) in rest.iter().enumerate() {
                         let sum = &mut sum[batch.colour((block, row))];
@@ -217,7 +216,7 @@ impl<'a> Spreads<'a> {
             for time in 0..CHOSEN {
                 let mut each = *each;
                 if let Some(each) = time.checked_sub(1).and_then(|colour| each.get_mut(colour)) {
-                    *each = lanes::zip(each, &own, |each, own| each * own);
+                    *each = product(each, &own);
                 }
                 if let Some(out) = out.get_mut(time * all + index) {
                     *out = total(&each);
@@ -226,9 +225,9 @@ impl<'a> Spreads<'a> {
         };
         for (index, (each, square)) in of_colours.iter().zip(squares).enumerate() {
             let mut each = *each;
-            each.iter_mut().for_each(|sum| *sum = joined(sum));
+            each.iter_mut().for_each(|sum| *sum = batch.joined(sum));
             // What is left of a signal that is its trend is rounding noise.
-            let (left, square) = (total(&each), joined(square));
+            let (left, square) = (total(&each), batch.joined(square));
             for l in 0..LANES {
                 let noise = square[l] * (f32::EPSILON * f32::EPSILON * 4096.0);
                 let counts = left[l] > noise && freedom[l] > 0.0;
@@ -246,14 +245,14 @@ impl<'a> Spreads<'a> {
             }
             count(within, channel * choices.count + choice, &each);
         }
-        Ok(Self { sums, within, freedom, pixels, has_several: fits.has_several, choices })
+        Ok(Self { sums, within, freedom, pixels, has_several: batch.call.n > 1, choices })
     }
 
-    /// Chooses, for all pixels or for a colour, and keeps that as one of the times that is chosen.
+    /// Chooses for all pixels, and for those of each of so many colours, and keeps that from a time on.
     #[inline(always)]
     pub(super) fn choose(
         &self,
-        colour: Option<usize>,
+        colours: usize,
         time: usize,
         is_stratified: bool,
         present: &Eight,
@@ -261,12 +260,14 @@ impl<'a> Spreads<'a> {
     ) {
         // Stratified samples' means differ by less than their variance within pixels tells: it may only warn.
         let part = if is_stratified { 0.0 } else { WITHIN };
-        let sharper = if colour.is_some() { SHARPER } else { 1.0 };
-        let freedom = lanes::each(&self.freedom, |freedom| freedom * if freedom < ENOUGH { 1.0 } else { sharper });
-        for channel in 0..self.choices.channels {
-            let row = colour.map_or(0, |colour| 1 + colour) * self.choices.channels + channel;
-            let [sums, within] = [&*self.sums, &*self.within].map(|all| row_at(all, self.choices.count, row));
-            self.share([sums, within], (&freedom, part), present, shares.of_mut(time, channel));
+        for by in 0..=colours {
+            let sharper = if by > 0 { SHARPER } else { 1.0 };
+            let freedom = lanes::each(&self.freedom, |freedom| freedom * if freedom < ENOUGH { 1.0 } else { sharper });
+            for channel in 0..self.choices.channels {
+                let row = by * self.choices.channels + channel;
+                let [sums, within] = [&*self.sums, &*self.within].map(|all| row_at(all, self.choices.count, row));
+                self.share([sums, within], (&freedom, part), present, shares.of_mut(time + by, channel));
+            }
         }
     }
 
@@ -297,7 +298,7 @@ impl<'a> Spreads<'a> {
                 lanes::zip(&told, inverse, |told, inverse| Real::max(told * inverse, 1e-30))
             };
             let ratio = over(spread, &most, &inverse);
-            *share = lanes::zip(&lanes::log2(&ratio), &power, |logarithm, power| logarithm * power);
+            *share = product(&lanes::log2(&ratio), &power);
             if has_several {
                 let ratio = over(within, &most_noise, &inverse_noise);
                 let logarithm =
@@ -314,7 +315,7 @@ impl<'a> Spreads<'a> {
         largest = lanes::zip(&largest, mean, |largest, mean| if mean > largest { mean } else { largest });
         let mut total = NONE;
         for (choice, share) in [&mut *mean].into_iter().chain(rest.iter_mut()).enumerate() {
-            *share = lanes::exp2(&lanes::zip(share, &largest, |share, largest| share - largest));
+            *share = lanes::exp2(&minus(share, &largest));
             if choices.is_edge(choice) {
                 // Where there is none, it is the plain mean.
                 *share = only(if choice > choices.fits { &NONE } else { present }, share);
@@ -329,9 +330,9 @@ impl<'a> Spreads<'a> {
         );
         let scale = lanes::zip(&varies, &lanes::divisor(&total), |varies, total| varies / total);
         let exact = lanes::each(&varies, |varies| 1.0 - varies);
-        *mean = plus(&exact, &lanes::zip(mean, &scale, |share, scale| share * scale));
+        *mean = plus(&exact, &product(mean, &scale));
         for share in rest {
-            *share = lanes::zip(share, &scale, |share, scale| share * scale);
+            *share = product(share, &scale);
         }
     }
 

@@ -11,8 +11,8 @@ use super::call::{Call, Layout};
 use super::fit::Fits;
 use super::groups::{Groups, Place};
 use super::products::{
-    AT_ONCE, AT_ONCE_LANES, COLOURS, Colours, Eight, Four, NONE, Sums, add_products, combine, only, plus, plus_four,
-    times,
+    AT_ONCE, AT_ONCE_LANES, COLOURS, Colours, Eight, Four, NONE, Sums, add_products, combine, minus, only, plus,
+    plus_four, product, times,
 };
 use super::terms::Terms;
 use crate::arena::Arena;
@@ -65,9 +65,9 @@ impl Call<'_> {
             return;
         }
         let channels = self.config.channels;
-        let mut index = 0;
-        while let Some(group) = groups.numbered(self, index) {
-            let window = self.window(groups.first + group.window);
+        for index in 0..groups.count {
+            let group = groups.numbered(index);
+            let window = self.window(group.window);
             let members = groups.members(&group);
             let is_lit = |member: usize, sample: usize| {
                 let place = Place::read(at(members, member));
@@ -77,10 +77,9 @@ impl Call<'_> {
             let first = is_lit(0, 0);
             let mut all = (0..group.len).flat_map(|member| (0..self.n).map(move |sample| (member, sample)));
             let has_both = all.any(|(member, sample)| is_lit(member, sample) != first);
-            if let Some(out) = groups.edges.get_mut(index) {
-                *out = if has_both && group.len >= FEWEST_PIXELS { 1.0 } else { 0.0 };
+            if has_both && group.len >= FEWEST_PIXELS {
+                groups.set_edges(index);
             }
-            index += 1;
         }
     }
 }
@@ -99,9 +98,6 @@ pub(super) fn edges_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Opt
 
 /// The fits to a batch whose groups have lit and dark samples.
 pub(super) struct Edges<'a> {
-    fixed: usize,
-    n: usize,
-    channels: usize,
     /// For each block and sample: its two coordinates, 1 if it is lit, and its values in units.
     samples: &'a mut [Four],
     /// Of each colour: all samples, with whether they are lit; lit ones, with their values.
@@ -115,8 +111,6 @@ pub(super) struct Edges<'a> {
     /// How much of the light arrives, and how much light arrives, at the points.
     shares: &'a mut [Eight],
     points: &'a mut [Eight],
-    /// 1 where the pixels of the colours that are judged have lit and dark samples, else 0.
-    pub(super) present: Eight,
 }
 
 /// The orthonormal Legendre polynomial of degree 1 of a coordinate.
@@ -144,7 +138,7 @@ fn functions(x: &Four, y: &Four) -> [Four; FUNCTIONS] {
     let square = |x: &Eight| lanes::each(x, |x| (x * x - 1.0) * (0.5 * SQRT_5));
     for row in 0..AT_ONCE {
         let (x, y) = (place(&x[row]), place(&y[row]));
-        let xy = lanes::zip(&x, &y, |x, y| x * y);
+        let xy = product(&x, &y);
         for (out, function) in out.iter_mut().zip([x, y, square(&x), xy, square(&y)]) {
             out[row] = function;
         }
@@ -167,18 +161,10 @@ fn logistic(q: &Eight) -> Eight {
 }
 
 impl<'a> Edges<'a> {
-    pub(super) fn new(
-        call: &Call<'_>,
-        terms: &Terms,
-        batch: &Batch<'_>,
-        arena: &mut Arena<'a, f32>,
-    ) -> Result<Self, Error> {
-        let (n, channels, fixed) = (call.n, call.config.channels, terms.fixed());
+    pub(super) fn new(batch: &Batch<'_>, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+        let (n, channels, fixed) = (batch.call.n, batch.call.config.channels, batch.terms.fixed());
         let (columns, columns_of_a) = (fixed + FUNCTIONS, fixed + SLOPES);
         Ok(Self {
-            fixed,
-            n,
-            channels,
             samples: arena.take_fours(batch.inside.len() * n * (3 + channels))?,
             all: Sums::new(COLOURS, columns, 1, arena)?,
             lit: Sums::new(COLOURS, columns_of_a, channels, arena)?,
@@ -187,17 +173,16 @@ impl<'a> Edges<'a> {
             most: [[NONE; Config::MAX_CHANNELS]; COLOURS],
             shares: arena.take_lanes(POINTS * POINTS)?,
             points: arena.take_lanes(POINTS * POINTS)?,
-            present: NONE,
         })
     }
 
     /// Reads the samples and sums their products.
     #[inline(always)]
-    pub(super) fn load(&mut self, call: &Call<'_>, batch: &Batch<'_>) {
+    pub(super) fn load(&mut self, batch: &Batch<'_>) {
         self.all.empty();
         self.lit.empty();
         for block in 0..batch.inside.len() {
-            self.read(call, batch, block);
+            self.read(batch, block);
             self.add(batch, block);
         }
         if batch.is_joined {
@@ -210,28 +195,28 @@ impl<'a> Edges<'a> {
     }
 
     #[inline]
-    fn samples(&self, block: usize) -> impl Iterator<Item = (&Four, &Four, &Four, &[Four])> {
-        let width = 3 + self.channels;
-        (block * self.n..(block + 1) * self.n).filter_map(move |sample| {
+    fn samples(&self, batch: &Batch<'_>, block: usize) -> impl Iterator<Item = (&Four, &Four, &Four, &[Four])> {
+        let (n, width) = (batch.call.n, 3 + batch.call.config.channels);
+        (block * n..(block + 1) * n).filter_map(move |sample| {
             let [x, y, lit, values @ ..] = row_at(self.samples, width, sample) else { return None };
             Some((x, y, lit, values))
         })
     }
 
     #[inline]
-    fn read(&mut self, call: &Call<'_>, batch: &Batch<'_>, block: usize) {
-        let width = 3 + self.channels;
+    fn read(&mut self, batch: &Batch<'_>, block: usize) {
+        let (call, width) = (batch.call, 3 + batch.call.config.channels);
         let inside = at(batch.inside, block);
         let mut x = [[0.0; AT_ONCE_LANES]; MAX_DIMS];
-        for sample in 0..self.n {
-            let out = row_at_mut(self.samples, width, block * self.n + sample);
+        for sample in 0..call.n {
+            let out = row_at_mut(self.samples, width, block * call.n + sample);
             let [u, v, lit, values @ ..] = out else { return };
             for row in 0..AT_ONCE {
                 let pixels = batch.pixels((block, row));
-                call.reader.put_positions(&pixels.map(|pixel| pixel * self.n + sample), 1, row * LANES, &mut x);
+                call.reader.put_positions(&pixels.map(|pixel| pixel * call.n + sample), 1, row * LANES, &mut x);
                 lit[row] = NONE;
                 for (channel, (value, units)) in values.iter_mut().zip(&batch.units).enumerate() {
-                    let input = call.inputs(&pixels, sample, channel);
+                    let input = call.gather(call.reader.inputs(), &pixels, (call.n, sample), channel);
                     lit[row] = lanes::zip(&lit[row], &input, |lit, input| if input > 0.0 { 1.0 } else { lit });
                     value[row] = units.scale(&input);
                 }
@@ -249,15 +234,16 @@ impl<'a> Edges<'a> {
     /// Adds a block's samples to the sums of its colour.
     #[inline(always)]
     fn add(&mut self, batch: &Batch<'_>, block: usize) {
-        let (fixed, colour) = (self.fixed, block % COLOURS);
+        let (fixed, channels, n, colour) =
+            (batch.terms.fixed(), batch.call.config.channels, batch.call.n, block % COLOURS);
         let inside = at(batch.inside, block);
         let mut columns = [[NONE; AT_ONCE]; MAX_COLUMNS];
         let columns = first_mut(&mut columns, fixed + FUNCTIONS);
         for (out, place) in columns.iter_mut().zip(row_at(batch.places, fixed, block)) {
             *out = times(&inside, place);
         }
-        for sample in block * self.n..(block + 1) * self.n {
-            let [x, y, lit, values @ ..] = row_at(self.samples, 3 + self.channels, sample) else { return };
+        for sample in block * n..(block + 1) * n {
+            let [x, y, lit, values @ ..] = row_at(self.samples, 3 + channels, sample) else { return };
             for (out, function) in from_mut(columns, fixed).iter_mut().zip(functions(x, y)) {
                 *out = times(&inside, &function);
             }
@@ -265,7 +251,7 @@ impl<'a> Edges<'a> {
             let mut columns_of_lit = [[NONE; AT_ONCE]; MAX_FIXED + SLOPES];
             let mut values_of_lit = [[NONE; AT_ONCE]; Config::MAX_CHANNELS];
             let columns_of_lit = first_mut(&mut columns_of_lit, fixed + SLOPES);
-            let values_of_lit = first_mut(&mut values_of_lit, self.channels);
+            let values_of_lit = first_mut(&mut values_of_lit, channels);
             let most = self.most.get_mut(colour).into_iter().flatten();
             for (out, column) in columns_of_lit.iter_mut().zip(columns.iter()) {
                 *out = times(lit, column);
@@ -278,11 +264,13 @@ impl<'a> Edges<'a> {
         }
     }
 
-    /// Corrects every pixel of the colours `taken` by fits to the other of them, as the last candidate.
+    /// Corrects every pixel of the colours `taken` by fits to the other of them, as the last candidate. 1 where they
+    /// have lit and dark samples, else 0.
     #[inline(always)]
-    pub(super) fn correct(&mut self, batch: &Batch<'_>, taken: Colours, fits: &mut Fits<'_>) {
+    pub(super) fn correct(&mut self, batch: &Batch<'_>, taken: Colours, fits: &mut Fits<'_>) -> Eight {
+        let (fixed, channels) = (batch.terms.fixed(), batch.call.config.channels);
         self.training.set_total(&self.all, taken);
-        self.present = self.has_both();
+        let present = self.has_both();
         for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
             let others = taken.without(colour);
             self.training.set_total(&self.all, others);
@@ -293,8 +281,8 @@ impl<'a> Edges<'a> {
             let mut a = [[NONE; MAX_FIXED + SLOPES]; Config::MAX_CHANNELS];
             let mut most = [NONE; Config::MAX_CHANNELS];
             if is_needed {
-                self.regress(batch, others, &has_both, first_mut(&mut q, self.fixed + FUNCTIONS));
-                self.fit_lit(&mut a);
+                self.regress(batch, others, &has_both, first_mut(&mut q, fixed + FUNCTIONS));
+                self.fit_lit(batch, &mut a);
                 for (_, colour) in self.most.iter().enumerate().filter(|&(colour, _)| others.has(colour)) {
                     most.iter_mut().zip(colour).for_each(|(most, value)| *most = lanes::zip(value, most, Real::max));
                 }
@@ -305,28 +293,29 @@ impl<'a> Edges<'a> {
                     if is_needed {
                         self.share_out(batch, (block, row), &q);
                     }
-                    for channel in 0..self.channels {
+                    for channel in 0..channels {
                         let corrections = fits.corrections_mut(block, channel).last_mut();
                         let (Some(out), Some(a), Some(most), Some(within)) =
                             (corrections, a.get(channel), most.get(channel), within.get_mut(channel))
                         else {
-                            return;
+                            return present;
                         };
                         let integral = if is_needed { self.light(batch, (block, row), a, most) } else { NONE };
-                        out[row] = self.compare((block, row), channel, &integral, &has_both, batch.inside, within);
+                        out[row] = self.compare(batch, (block, row), channel, &integral, &has_both, within);
                     }
                 }
             }
             for value in 0..batch.values {
                 let whole = fits.within(value, colour, 0);
-                let left = within.get(value).filter(|_| value < self.channels).unwrap_or(&whole);
+                let left = within.get(value).filter(|_| value < channels).unwrap_or(&whole);
                 fits.set_within(value, colour, fits.count, left);
             }
         }
         // Of what is left of values without what is known nothing is dark.
-        for (block, value) in batch.blocks(taken).flat_map(|b| (self.channels..batch.values).map(move |v| (b, v))) {
+        for (block, value) in batch.blocks(taken).flat_map(|b| (channels..batch.values).map(move |v| (b, v))) {
             fits.corrections_mut(block, value).last_mut().into_iter().for_each(|out| *out = [NONE; AT_ONCE]);
         }
+        present
     }
 
     /// Where samples of the training set are lit, and others are not.
@@ -339,7 +328,7 @@ impl<'a> Edges<'a> {
     /// The logistic regression, by Newton's steps, where `wanted`.
     #[inline(always)]
     fn regress(&self, batch: &Batch<'_>, training: Colours, wanted: &Eight, weights: &mut [Eight]) {
-        let width = weights.len();
+        let (width, fixed) = (weights.len(), batch.terms.fixed());
         let sums = self.training.part(0);
         let [count, lit] = [sums.gram, sums.sides].map(|sums| at(sums, 0));
         let odds = lanes::zip(&lit, &count, |lit, count| (lit + 0.5) / (count - lit + 0.5));
@@ -357,7 +346,7 @@ impl<'a> Edges<'a> {
                 // All are as likely to be lit, so that the sums are at hand.
                 let variance = share.map(|share| Real::max(share * (1.0 - share), LEAST_VARIANCE));
                 for (out, sum) in matrix.iter_mut().zip(sums.gram) {
-                    *out = lanes::zip(sum, &variance, |sum, variance| sum * variance);
+                    *out = product(sum, &variance);
                 }
                 for (j, (out, side)) in sides.iter_mut().zip(sums.sides).enumerate() {
                     *out = lanes::minus_product(*side, at(row(sums.gram, j), 0), share);
@@ -367,12 +356,10 @@ impl<'a> Edges<'a> {
                 for block in batch.blocks(training) {
                     self.add_slopes(batch, block, weights, matrix, sides);
                 }
-                if batch.is_joined {
-                    matrix.iter_mut().chain(sides.iter_mut()).for_each(|sum| *sum = [lanes::sum(sum); LANES]);
-                }
+                matrix.iter_mut().chain(sides.iter_mut()).for_each(|sum| *sum = batch.joined(sum));
             }
             for (j, (side, weight)) in sides.iter_mut().zip(weights.iter()).enumerate() {
-                let penalty = penalty(&PENALTIES, self.fixed, j);
+                let penalty = penalty(&PENALTIES, fixed, j);
                 *side = lanes::minus_product(*side, *weight, [penalty; LANES]);
                 if let Some(diagonal) = row_mut(matrix, j).last_mut() {
                     *diagonal = diagonal.map(|value| value + penalty);
@@ -406,14 +393,14 @@ impl<'a> Edges<'a> {
         matrix: &mut [Eight],
         sides: &mut [Eight],
     ) {
-        let fixed = self.fixed;
+        let fixed = batch.terms.fixed();
         let places = row_at(batch.places, fixed, block);
         let inside = at(batch.inside, block);
         let base = combine([NONE; AT_ONCE], places, weights);
         // A pixel's place is the same for all of its samples.
         let (mut total, mut totals) = ([NONE; AT_ONCE], [[NONE; AT_ONCE]; FUNCTIONS]);
         let mut rest = [NONE; AT_ONCE];
-        for (x, y, lit, _) in self.samples(block) {
+        for (x, y, lit, _) in self.samples(batch, block) {
             let functions = functions(x, y);
             let q = combine(base, &functions, from(weights, fixed));
             let (mut variance, mut apart) = (q, *lit);
@@ -450,22 +437,22 @@ impl<'a> Edges<'a> {
 
     /// Least squares to the lit samples of the training set.
     #[inline]
-    fn fit_lit(&self, a: &mut [[Eight; MAX_FIXED + SLOPES]; Config::MAX_CHANNELS]) {
-        let width = self.fixed + SLOPES;
+    fn fit_lit(&self, batch: &Batch<'_>, a: &mut [[Eight; MAX_FIXED + SLOPES]; Config::MAX_CHANNELS]) {
+        let (fixed, width) = (batch.terms.fixed(), batch.terms.fixed() + SLOPES);
         let sums = self.training_lit.part(0);
         let count = at(sums.gram, 0);
         let mut matrix = [NONE; packed_len(MAX_FIXED + SLOPES)];
         let matrix = first_mut(&mut matrix, packed_len(width));
         copy(matrix, sums.gram);
         for j in 0..width {
-            let penalty = penalty(&PENALTIES_OF_A, self.fixed, j);
+            let penalty = penalty(&PENALTIES_OF_A, fixed, j);
             if let Some(diagonal) = row_mut(matrix, j).last_mut() {
                 *diagonal = diagonal.map(|value| value + penalty);
             }
         }
         ldlt::factor_each(matrix, width);
         let divisor = lanes::divisor(&count);
-        for (channel, out) in a.iter_mut().enumerate().take(self.channels) {
+        for (channel, out) in a.iter_mut().enumerate().take(batch.call.config.channels) {
             let out = first_mut(out, width);
             copy(out, row_at(sums.sides, width, channel));
             // About their mean, which is not held back.
@@ -492,7 +479,7 @@ impl<'a> Edges<'a> {
         const CHANGE: f32 = SQRT_5 * STEP * STEP;
         const FIRST: f32 = 0.5 * CHANGE - SQRT_5 * SQRT_3 * STEP;
         let base = self.place_part(batch, at, q);
-        let Some(&[x, y, xx, xy, yy]) = q.get(self.fixed..).and_then(<[Eight]>::first_chunk) else { return };
+        let Some(&[x, y, xx, xy, yy]) = q.get(batch.terms.fixed()..).and_then(<[Eight]>::first_chunk) else { return };
         let mut largest = base.map(Real::abs);
         for (weight, most) in [(x, SQRT_3), (y, SQRT_3), (xx, SQRT_5), (xy, 3.0), (yy, SQRT_5)] {
             largest = lanes::zip(&largest, &weight, |sum, weight| sum + most * Real::abs(weight));
@@ -500,9 +487,9 @@ impl<'a> Edges<'a> {
         let scale = largest.map(|largest| -LOG2_E * (MOST / Real::max(largest, MOST)));
         let power = |terms: &[(Eight, f32)]| {
             let sum = terms.iter().fold(NONE, |sum, (weight, f)| lanes::plus_product(sum, *weight, [*f; LANES]));
-            lanes::exp2(&lanes::zip(&sum, &scale, |sum, scale| sum * scale))
+            lanes::exp2(&product(&sum, &scale))
         };
-        let multiply = |a: &mut Eight, b: &Eight| *a = lanes::zip(a, b, |a, b| a * b);
+        let multiply = |a: &mut Eight, b: &Eight| *a = product(a, b);
         let corner = [(base, 1.0), (x, -SQRT_3), (y, -SQRT_3), (xx, SQRT_5), (xy, 3.0), (yy, SQRT_5)];
         let (mut begin, mut down) = (power(&corner), power(&[(y, STEP), (xy, -SQRT_3 * STEP), (yy, FIRST)]));
         let mut along = power(&[(x, STEP), (xy, -SQRT_3 * STEP), (xx, FIRST)]);
@@ -526,7 +513,7 @@ impl<'a> Edges<'a> {
     #[inline(always)]
     fn light(&mut self, batch: &Batch<'_>, at: (usize, usize), a: &[Eight], most: &Eight) -> Eight {
         let base = self.place_part(batch, at, a);
-        let Some(&[x, y]) = a.get(self.fixed..).and_then(<[Eight]>::first_chunk) else { return NONE };
+        let Some(&[x, y]) = a.get(batch.terms.fixed()..).and_then(<[Eight]>::first_chunk) else { return NONE };
         let mut integral = NONE;
         let lines = self.points.as_chunks_mut::<POINTS>().0.iter_mut();
         for (j, ((line, shares), first)) in lines.zip(self.shares.as_chunks::<POINTS>().0).zip(LINE).enumerate() {
@@ -535,7 +522,7 @@ impl<'a> Edges<'a> {
             for ((out, share), first) in line.iter_mut().zip(shares).zip(LINE) {
                 let light = lanes::plus_product(constant, x, [first; LANES]);
                 let light = lanes::zip(&light, most, |light, most| Real::max(Real::min(light, most), 0.0));
-                *out = lanes::zip(&light, share, |light, share| light * share);
+                *out = product(&light, share);
                 sum = plus(&sum, out);
                 lanes::keep_together();
             }
@@ -551,7 +538,7 @@ impl<'a> Edges<'a> {
     /// The part of a polynomial that the pixels' places decide.
     #[inline]
     fn place_part(&self, batch: &Batch<'_>, (block, row): (usize, usize), coefficients: &[Eight]) -> Eight {
-        let places = row_at(batch.places, self.fixed, block).iter().zip(coefficients);
+        let places = row_at(batch.places, batch.terms.fixed(), block).iter().zip(coefficients);
         places.fold(NONE, |sum, (place, coefficient)| lanes::plus_product(sum, place[row % AT_ONCE], *coefficient))
     }
 
@@ -559,28 +546,28 @@ impl<'a> Edges<'a> {
     #[inline(always)]
     fn compare(
         &self,
+        batch: &Batch<'_>,
         (block, row): (usize, usize),
         channel: usize,
         integral: &Eight,
         wanted: &Eight,
-        inside: &[Four],
         within: &mut Eight,
     ) -> Eight {
         let (mut sum, mut square) = (NONE, NONE);
         let (mut total, mut first) = (NONE, None);
-        for (x, y, _, values) in self.samples(block) {
+        for (x, y, _, values) in self.samples(batch, block) {
             let value = at(values, channel)[row % AT_ONCE];
             let light = only(wanted, &self.interpolate(&x[row % AT_ONCE], &y[row % AT_ONCE]));
             total = plus(&total, &light);
-            let apart = lanes::zip(&value, &light, |value, light| value - light);
+            let apart = minus(&value, &light);
             let first = *first.get_or_insert(apart);
-            let apart = lanes::zip(&apart, &first, |apart, first| apart - first);
+            let apart = minus(&apart, &first);
             sum = plus(&sum, &apart);
             square = lanes::plus_product(square, apart, apart);
         }
-        let inverse = 1.0 / self.n as f32;
+        let inverse = 1.0 / batch.call.n as f32;
         let left = lanes::minus_product(square, sum.map(|sum| sum * inverse), sum);
-        *within = plus(within, &only(&at(inside, block)[row % AT_ONCE], &left.map(|left| Real::max(left, 0.0))));
+        *within = plus(within, &only(&at(batch.inside, block)[row % AT_ONCE], &left.map(|left| Real::max(left, 0.0))));
         only(wanted, &lanes::zip(integral, &total, |integral, total| integral - total * inverse))
     }
 

@@ -3,8 +3,8 @@
 //! One factorisation A = L D L' serves every candidate, as each is a prefix of the columns and so of L.
 
 use super::batch::{Batch, MAX_FIXED, blocks};
-use super::call::{Call, Layout};
-use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only};
+use super::call::Layout;
+use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only, plus, product};
 use super::slices::Apart;
 use super::terms::{SINGULAR, Terms, strength};
 use crate::arena::Arena;
@@ -32,8 +32,6 @@ pub(super) struct Fits<'a> {
     /// Of several samples in each pixel, what the fits leave of the samples' sums of squares about their pixel's mean:
     /// of each value and colour, which they have not seen.
     within: &'a mut [Eight],
-    /// Whether pixels have several samples.
-    pub(super) has_several: bool,
     /// A, then its factors; for each value what the fit is to, then D^-1 L^-1 times it.
     system: Sums<'a>,
     /// Sums of the pixels' means.
@@ -61,19 +59,14 @@ pub(super) fn fits_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Opti
 }
 
 impl<'a> Fits<'a> {
-    pub(super) fn new(
-        call: &Call<'_>,
-        terms: &Terms,
-        batch: &Batch<'_>,
-        arena: &mut Arena<'a, f32>,
-    ) -> Result<Self, Error> {
-        let (columns, values, count) = (terms.columns(), call.values(), terms.candidates());
+    pub(super) fn new(batch: &Batch<'_>, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+        let (call, terms) = (batch.call, &batch.terms);
+        let (columns, values, count) = (terms.columns(), batch.values, terms.candidates());
         let fits = Self {
             corrections: arena.take_fours(batch.inside.len() * count * values)?,
             count,
             values,
             within: arena.take_lanes(within_len(terms, values, call.n))?,
-            has_several: call.n > 1,
             system: Sums::new(1, columns, values, arena)?,
             between: Sums::new(1, columns, values, arena)?,
             coefficients: arena.take_lanes(values * count * columns)?,
@@ -81,32 +74,35 @@ impl<'a> Fits<'a> {
             units: arena.take_lanes(terms.fixed() * columns)?,
             solved: arena.take_fours(columns)?,
             penalties: arena.take(columns)?,
-            apart: if terms.slices > 0 { Some(Apart::new(terms, values, call, arena)?) } else { None },
+            apart: if terms.slices > 0 { Some(Apart::new(terms, values, arena)?) } else { None },
         };
         terms.penalties(call.config, call.basis, fits.penalties);
         Ok(fits)
     }
 
-    /// Where slices are apart, these; with the penalties, and where corrections are kept.
-    pub(super) fn apart(&mut self) -> Option<(&mut Apart<'a>, &[f32], &mut [Four])> {
-        self.apart.as_mut().map(|apart| (apart, &*self.penalties, &mut *self.corrections))
+    /// Corrects pixels of the colours `taken` where slices are apart.
+    #[inline(always)]
+    pub(super) fn correct_slices(&mut self, batch: &Batch<'_>, taken: Colours) {
+        if let Some(apart) = &mut self.apart {
+            apart.correct(batch, self.penalties, taken, self.corrections);
+        }
     }
 
     /// Corrects pixels of one sample of the colours `taken`, which the fit to all of them has seen.
     #[inline(always)]
-    pub(super) fn leave_own(&mut self, terms: &Terms, batch: &Batch<'_>, taken: Colours) {
+    pub(super) fn leave_own(&mut self, batch: &Batch<'_>, taken: Colours) {
         for block in batch.blocks(taken) {
-            self.apply(terms, batch, block);
-            self.leave_block(terms, batch, block);
+            self.apply(batch, block);
+            self.leave_block(batch, block);
         }
     }
 
     /// Corrects pixels of several samples of a colour, which the fit has not seen.
     #[inline(always)]
-    pub(super) fn correct_colour(&mut self, terms: &Terms, batch: &Batch<'_>, colour: usize) {
-        self.judge(terms, batch, colour);
+    pub(super) fn correct_colour(&mut self, batch: &Batch<'_>, colour: usize) {
+        self.judge(batch, colour);
         for block in batch.blocks(Colours(1 << colour)) {
-            self.apply(terms, batch, block);
+            self.apply(batch, block);
         }
     }
 
@@ -139,7 +135,8 @@ impl<'a> Fits<'a> {
 
     /// The fit to all pixels of some colours.
     #[inline(always)]
-    pub(super) fn factor(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, training: Colours) {
+    pub(super) fn factor(&mut self, batch: &Batch<'_>, training: Colours) {
+        let (call, terms) = (batch.call, &batch.terms);
         let width = terms.columns();
         let (mut own, n) = (0.0, call.n as f32);
         if call.n == 1 {
@@ -155,16 +152,11 @@ impl<'a> Fits<'a> {
         let counted = if call.n == 1 { &self.system } else { &self.between };
         let count = at(counted.part(0).gram, 0);
         let strength = strength(call.config);
-        let controls = terms.fixed()..terms.fixed() + call.config.controls;
+        let scale = count.map(|count| strength * Real::max(count - own, 0.0));
         let Part { gram, sides, .. } = self.system.part_mut(0);
         for (j, penalty) in self.penalties.iter().enumerate() {
             let Some(diagonal) = row_mut(gram, j).last_mut() else { continue };
-            let divisor = if controls.contains(&j) { lanes::divisor(&count) } else { *diagonal };
-            for l in 0..LANES {
-                // What a control function is measured in is its maker's choice.
-                let unit = if controls.contains(&j) { diagonal[l] / divisor[l] } else { 1.0 };
-                diagonal[l] += strength * Real::max(count[l] - own, 0.0) * penalty * unit;
-            }
+            *diagonal = plus(diagonal, &terms.ridge(j, *penalty, &scale, diagonal, &count));
             lanes::keep_together();
         }
         ldlt::factor_each(gram, width);
@@ -174,7 +166,7 @@ impl<'a> Fits<'a> {
         for (side, coefficients) in rows_mut(sides, width).zip(rows_mut(self.coefficients, self.count * width)) {
             ldlt::forward_each::<f32, 1>(gram, 0, ldlt::one_each_mut(side));
             for (side, pivot) in side.iter_mut().zip(self.pivots.iter()) {
-                *side = lanes::zip(side, pivot, |side, pivot| side * pivot);
+                *side = product(side, pivot);
                 lanes::keep_together();
             }
             for (coefficients, &end) in rows_mut(coefficients, width).zip(&terms.ends) {
@@ -219,7 +211,7 @@ impl<'a> Fits<'a> {
             ldlt::forward_each::<f32, 1>(&trend, 0, ldlt::one_each_mut(explained));
             let mut apart = *whole;
             for (j, value) in explained.iter().enumerate() {
-                let scaled = lanes::zip(value, &diagonal(&trend, j), |value, pivot| value * pivot);
+                let scaled = product(value, &diagonal(&trend, j));
                 apart = lanes::minus_product(apart, scaled, *value);
             }
             let samples = lanes::divisor(&pixels.map(|count| count * (n - 1.0)));
@@ -242,7 +234,8 @@ impl<'a> Fits<'a> {
 
     /// What the fit leaves of the samples of a colour that it has not seen, about their pixels' means.
     #[inline(always)]
-    fn judge(&mut self, terms: &Terms, batch: &Batch<'_>, colour: usize) {
+    fn judge(&mut self, batch: &Batch<'_>, colour: usize) {
+        let terms = &batch.terms;
         let (width, fixed) = (terms.columns(), terms.fixed());
         let Part { gram, sides, squares } = batch.within.part(colour);
         for (value, (whole, sides)) in squares.iter().zip(rows(sides, width)).enumerate() {
@@ -270,7 +263,8 @@ impl<'a> Fits<'a> {
 
     /// Corrects a block by the fit. The fixed columns follow the signal, and correct nothing.
     #[inline(always)]
-    fn apply(&mut self, terms: &Terms, batch: &Batch<'_>, block: usize) {
+    fn apply(&mut self, batch: &Batch<'_>, block: usize) {
+        let terms = &batch.terms;
         let functions = row_at(batch.functions, terms.functions, block);
         let places = row_at(batch.places, terms.fixed(), block);
         let (first, count) = terms.moving;
@@ -295,11 +289,12 @@ impl<'a> Fits<'a> {
     /// Corrects a block further: the fit has seen the pixels' one sample, which is left out in closed form. With x its
     /// columns, h = x'A^-1 x and e its residual, the fit to the others has coefficients b - A^-1 x e / (1 - h).
     #[inline(always)]
-    fn leave_block(&mut self, terms: &Terms, batch: &Batch<'_>, block: usize) {
+    fn leave_block(&mut self, batch: &Batch<'_>, block: usize) {
+        let terms = &batch.terms;
         let (width, fixed) = (terms.columns(), terms.fixed());
         let places = row_at(batch.places, fixed, block);
         let inside = at(batch.inside, block);
-        batch.put_columns(terms, block, self.solved);
+        batch.put_columns(block, self.solved, |_| ());
         ldlt::forward_each(self.system.part(0).gram, 0, self.solved);
         let mut leverage = [NONE; AT_ONCE];
         // A^-1 x of the fixed columns.
@@ -310,7 +305,7 @@ impl<'a> Fits<'a> {
             let (Some(solved), Some(pivots)) = (solved, pivots) else { return };
             for (z, pivot) in solved.iter_mut().zip(pivots) {
                 for row in 0..AT_ONCE {
-                    let scaled = lanes::zip(&z[row], pivot, |z, pivot| z * pivot);
+                    let scaled = product(&z[row], pivot);
                     leverage[row] = lanes::plus_product(leverage[row], scaled, z[row]);
                     z[row] = scaled;
                 }

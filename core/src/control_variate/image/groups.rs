@@ -6,7 +6,7 @@ use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::LANES;
 use crate::matrix::{at, row_at, row_at_mut};
-use crate::rows::part;
+use crate::rows::{first, part, part_mut};
 use heapless::Vec;
 
 /// Windows that are worked on together hold at most so many pixels, or are eight.
@@ -16,8 +16,8 @@ const MANY: usize = 64;
 
 /// Where a pixel is in its window: its column, row and frame, each below 1024.
 ///
-/// Kept as the bits of a number, as the workspace holds nothing else. All are below 2^30: no bits of a NaN, which a
-/// processor might change.
+/// Kept as the bits of a number, as the workspace holds nothing else; so are counts. All are below 2^30: no bits of a
+/// NaN, which a processor might change.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Place(u32);
 
@@ -47,17 +47,11 @@ impl Place {
     }
 }
 
-/// A count below 2^24, which is exact in `f32`.
-#[inline]
-fn count(number: f32) -> usize {
-    number as usize
-}
-
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Group {
     /// Its number.
     pub(super) index: usize,
-    /// Its window's, among those that are worked on.
+    /// Its window's.
     pub(super) window: usize,
     /// Where its pixels begin in the list.
     pub(super) start: usize,
@@ -67,27 +61,24 @@ pub(super) struct Group {
     pub(super) has_edges: bool,
 }
 
-/// Numbers of a group: window, start, length.
-const RECORD: usize = 3;
+/// Numbers of a record that are not told of its group: window, start, length, and whether it has edges, as bits.
+const RECORD: usize = 4;
 
 /// The groups of some windows, and what was found for them.
 pub(super) struct Groups<'a> {
-    /// The number of the first of the windows.
-    pub(super) first: usize,
     /// How many groups there are.
-    count: usize,
+    pub(super) count: usize,
+    channels: usize,
+    /// Numbers of a record.
+    width: usize,
     /// The pixels' places, group after group.
     list: &'a mut [f32],
+    /// Of each group where it is; what is told of it: its gain, whether it has an error, and the error of each channel;
+    /// then of each turn the lowest and the highest value of each channel that fits are made to, infinite where all
+    /// are.
     records: &'a mut [f32],
     /// The groups' numbers, from the largest to the smallest.
     order: &'a mut [f32],
-    /// What is told of each group: its gain, whether it has an error, and the error of each channel.
-    told: &'a mut [f32],
-    /// For each group and turn, the lowest and the highest value of each channel that fits are made to; infinite where
-    /// all are.
-    limits: &'a mut [f32],
-    /// For each group 1 if it has lit and dark samples; none unless edges are looked for.
-    pub(super) edges: &'a mut [f32],
     /// For each pixel of the list and each channel, what is added to the mean.
     pub(super) corrections: &'a mut [f32],
 }
@@ -104,52 +95,42 @@ impl Layout<'_> {
         !self.windows.is_ordered && self.image.surfaces.is_empty() && self.windows.pixels() >= MANY
     }
 
-    fn whole(&self) -> Group {
-        Group { len: self.windows.pixels(), ..Group::default() }
-    }
-
     /// The fewest pixels of a group for which a fit can do more than the mean. Of one sample in each, fewer would leave
     /// no digits of what is left of them beside their trend.
     fn least(&self) -> usize {
         if self.is_single_fit() && self.n > 1 { 2 } else { self.windows.axes() + 3 }
     }
 
-    fn most_groups(&self) -> usize {
-        if self.is_joined() { 1 } else { self.windows_at_once() * (self.windows.pixels() / self.least().max(1)) }
+    fn record_len(&self) -> usize {
+        RECORD + 2 + self.config.channels + self.turns() * 2 * self.config.channels
     }
 
-    /// Numbers that the groups of all turns take.
+    /// Numbers of places, records, order and corrections, of as many windows as are worked on together.
+    fn groups_lens(&self) -> [usize; 4] {
+        let (windows, pixels) = (self.windows_at_once(), self.windows.pixels());
+        let corrections = windows.saturating_mul(pixels).saturating_mul(self.config.channels);
+        if self.is_joined() {
+            return [0, self.record_len(), 1, corrections];
+        }
+        let most = windows.saturating_mul(pixels / self.least().max(1));
+        [windows.saturating_mul(pixels), most.saturating_mul(self.record_len()), most, corrections]
+    }
+
+    /// Numbers that groups take.
     pub(super) fn groups_len(&self) -> Option<usize> {
-        let channels = self.config.channels;
-        let pixels = self.windows_at_once().checked_mul(self.windows.pixels())?;
-        let listed = if self.is_joined() { 0 } else { pixels };
-        let each = RECORD + 1 + self.told_len() + self.limits_len() + usize::from(self.has_edges());
-        pixels.checked_mul(channels)?.checked_add(listed)?.checked_add(self.most_groups().checked_mul(each)?)
+        self.groups_lens().into_iter().try_fold(0, usize::checked_add)
     }
 
-    /// Numbers that are told of a group.
-    pub(super) fn told_len(&self) -> usize {
-        2 + self.config.channels
-    }
-
-    pub(super) fn limits_len(&self) -> usize {
-        self.turns() * 2 * self.config.channels
-    }
-
-    /// Room for the groups of as many windows as are worked on together.
     pub(super) fn groups<'a>(&self, arena: &mut Arena<'a, f32>) -> Result<Groups<'a>, Error> {
-        let pixels = self.windows_at_once() * self.windows.pixels();
-        let most = self.most_groups();
+        let [list, records, order, corrections] = self.groups_lens();
         Ok(Groups {
-            first: 0,
             count: 0,
-            list: arena.take(if self.is_joined() { 0 } else { pixels })?,
-            records: arena.take(most * RECORD)?,
-            order: arena.take(most)?,
-            told: arena.take(most * self.told_len())?,
-            limits: arena.take(most * self.limits_len())?,
-            edges: arena.take(if self.has_edges() { most } else { 0 })?,
-            corrections: arena.take(pixels * self.config.channels)?,
+            channels: self.config.channels,
+            width: self.record_len(),
+            list: arena.take(list)?,
+            records: arena.take(records)?,
+            order: arena.take(order)?,
+            corrections: arena.take(corrections)?,
         })
     }
 
@@ -159,10 +140,11 @@ impl Layout<'_> {
         self.windows.window(index - row * across, row)
     }
 
-    /// The image's number of the first pixel of a group's window.
-    pub(super) fn corner(&self, groups: &Groups<'_>, group: &Group) -> usize {
-        let Window { x, y } = self.window(groups.first + group.window);
-        if self.is_joined() { 0 } else { self.windows.number(x, y, 0) }
+    /// The image's number of a window's first pixel.
+    #[inline]
+    pub(super) fn corner(&self, index: usize) -> usize {
+        let Window { x, y } = self.window(index);
+        self.windows.number(x, y, 0)
     }
 
     /// The image's number of pixel `index` of a group, which is at `place` in its window.
@@ -175,23 +157,23 @@ impl Layout<'_> {
     /// Divides windows `first` to before `end` into groups.
     #[inline]
     pub(super) fn divide(&self, first: usize, end: usize, groups: &mut Groups<'_>) {
-        groups.first = first;
         groups.count = 0;
         if self.is_joined() {
-            return;
+            groups.push(0, 0, self.windows.pixels());
+            return groups.sort();
         }
         let mut filled = 0;
         // Of each pixel of a window its place, and its number less that of the window's first.
         let mut places: Vec<(Place, u32), { Image::MAX_WINDOW }> = Vec::new();
-        let corner = self.window(first);
+        let window = self.window(first);
         self.each_place(|place| {
-            let apart = self.pixel(corner, place, 0) - self.pixel(corner, Place::default(), 0);
+            let apart = self.pixel(window, place, 0) - self.corner(first);
             // A window has no more pixels than that.
             let _ = places.push((place, apart as u32));
         });
         let mut left: Vec<(Place, u32), { Image::MAX_WINDOW }> = Vec::new();
         for index in first..end {
-            let corner = self.pixel(self.window(index), Place::default(), 0);
+            let corner = self.corner(index);
             for &(place, apart) in &places {
                 let _ = left.push((place, at(self.image.surfaces, corner + apart as usize)));
             }
@@ -209,7 +191,7 @@ impl Layout<'_> {
                 if filled - start < self.least() {
                     filled = start;
                 } else {
-                    groups.push(index - first, start, filled - start);
+                    groups.push(index, start, filled - start);
                 }
             }
         }
@@ -233,21 +215,24 @@ impl Layout<'_> {
 
 impl Groups<'_> {
     fn push(&mut self, window: usize, start: usize, len: usize) {
-        let record = self.records.get_mut(self.count * RECORD..);
-        if let Some([a, b, c, ..]) = record {
-            [*a, *b, *c] = [window, start, len].map(|number| number as f32);
+        if let Some(record) = row_at_mut(self.records, self.width, self.count).first_chunk_mut::<RECORD>() {
+            *record = [window, start, len, 0].map(|number| f32::from_bits(number as u32));
             self.count += 1;
         }
     }
 
-    fn record(&self, index: usize) -> Group {
-        match self.records.get(index * RECORD..) {
-            Some(&[window, start, len, ..]) => {
-                let [window, start, len] = [window, start, len].map(count);
-                let has_edges = at(self.edges, index) > 0.0;
-                Group { index, window, start, len, has_edges }
-            }
-            _ => Group::default(),
+    /// Group `index` in the order of their windows.
+    #[inline]
+    pub(super) fn numbered(&self, index: usize) -> Group {
+        let record = row_at(self.records, self.width, index).first_chunk::<RECORD>();
+        let [window, start, len, has_edges] = record.map_or([0; RECORD], |record| record.map(bits));
+        Group { index, window, start, len, has_edges: has_edges > 0 }
+    }
+
+    /// Notes that a group has lit and dark samples.
+    pub(super) fn set_edges(&mut self, index: usize) {
+        if let Some([_, _, _, has_edges, ..]) = self.records.get_mut(index * self.width..) {
+            *has_edges = f32::from_bits(1);
         }
     }
 
@@ -255,8 +240,10 @@ impl Groups<'_> {
     fn sort(&mut self) {
         // Where the groups of each size begin, those of the largest first.
         let mut begins = [0u32; Image::MAX_WINDOW + 1];
+        // All pixels in one are as many as they may be.
+        let size = |groups: &Self, index: usize| groups.numbered(index).len.min(Image::MAX_WINDOW);
         for index in 0..self.count {
-            if let Some(begin) = begins.get_mut(self.record(index).len) {
+            if let Some(begin) = begins.get_mut(size(self, index)) {
                 *begin += 1;
             }
         }
@@ -265,9 +252,9 @@ impl Groups<'_> {
             (*begin, total) = (total, total + *begin);
         }
         for index in 0..self.count {
-            let Some(begin) = begins.get_mut(self.record(index).len) else { continue };
+            let Some(begin) = begins.get_mut(size(self, index)) else { continue };
             if let Some(out) = self.order.get_mut(*begin as usize) {
-                *out = index as f32;
+                *out = f32::from_bits(index as u32);
                 *begin += 1;
             }
         }
@@ -275,51 +262,41 @@ impl Groups<'_> {
 
     /// The groups from the largest to the smallest.
     #[inline]
-    pub(super) fn by_size(&self, layout: &Layout<'_>, place: usize) -> Option<Group> {
-        if layout.is_joined() {
-            return self.numbered(layout, place);
-        }
-        let &index = self.order.get(..self.count)?.get(place)?;
-        Some(self.record(count(index)))
+    pub(super) fn by_size(&self, place: usize) -> Option<Group> {
+        let &index = first(self.order, self.count).get(place)?;
+        Some(self.numbered(bits(index)))
     }
 
-    pub(super) fn numbered(&self, layout: &Layout<'_>, index: usize) -> Option<Group> {
-        if layout.is_joined() {
-            let has_edges = at(self.edges, 0) > 0.0;
-            return (index == 0).then(|| Group { has_edges, ..layout.whole() });
-        }
-        (index < self.count).then(|| self.record(index))
+    /// What is told of a group.
+    pub(super) fn told(&self, group: &Group) -> &[f32] {
+        part(self.records, group.index * self.width + RECORD, 2 + self.channels)
     }
 
-    /// The groups in the order of their windows.
-    pub(super) fn in_order(&self, layout: &Layout<'_>) -> impl Iterator<Item = Group> {
-        (0..).map_while(|index| self.numbered(layout, index))
+    pub(super) fn told_mut(&mut self, group: &Group) -> &mut [f32] {
+        part_mut(self.records, group.index * self.width + RECORD, 2 + self.channels)
     }
 
-    /// What is told of a group: its gain, whether it has an error, and the error of each channel.
-    pub(super) fn told(&self, layout: &Layout<'_>, group: &Group) -> &[f32] {
-        row_at(self.told, layout.told_len(), group.index)
-    }
-
-    pub(super) fn told_mut(&mut self, layout: &Layout<'_>, group: &Group) -> &mut [f32] {
-        row_at_mut(self.told, layout.told_len(), group.index)
+    /// Where the limits of a turn begin.
+    #[inline]
+    fn limits_at(&self, group: &Group, turn: usize) -> usize {
+        group.index * self.width + RECORD + 2 + self.channels + turn * 2 * self.channels
     }
 
     /// For each channel the lowest and the highest value that fits are made to in a turn.
     #[inline]
-    pub(super) fn limits(&self, layout: &Layout<'_>, group: &Group, turn: usize) -> &[f32] {
-        row_at(self.limits, 2 * layout.config.channels, group.index * layout.turns() + turn)
+    pub(super) fn limits(&self, group: &Group, turn: usize) -> &[f32] {
+        part(self.records, self.limits_at(group, turn), 2 * self.channels)
     }
 
     /// The same, to be written.
     #[inline]
-    pub(super) fn limits_mut(&mut self, layout: &Layout<'_>, group: &Group, turn: usize) -> &mut [f32] {
-        row_at_mut(self.limits, 2 * layout.config.channels, group.index * layout.turns() + turn)
+    pub(super) fn limits_mut(&mut self, group: &Group, turn: usize) -> &mut [f32] {
+        part_mut(self.records, self.limits_at(group, turn), 2 * self.channels)
     }
 
     /// Whether a group has pixels beyond its limits.
-    pub(super) fn has_limits(&self, layout: &Layout<'_>, group: &Group, turn: usize) -> bool {
-        self.limits(layout, group, turn).iter().any(|limit| limit.is_finite())
+    pub(super) fn has_limits(&self, group: &Group, turn: usize) -> bool {
+        self.limits(group, turn).iter().any(|limit| limit.is_finite())
     }
 
     /// The places of a group's pixels, to be read; none where all pixels are one group.
@@ -327,4 +304,10 @@ impl Groups<'_> {
     pub(super) fn members(&self, group: &Group) -> &[f32] {
         part(self.list, group.start, group.len)
     }
+}
+
+/// A count that was kept as bits.
+#[inline]
+fn bits(number: f32) -> usize {
+    number.to_bits() as usize
 }

@@ -6,8 +6,7 @@
 //! most v, and at most 1. Where more arrives than is known, v says little.
 
 use super::batch::{Batch, KNOWN_SUMS};
-use super::call::Call;
-use super::products::{AT_ONCE, Eight, Four, NONE, only, plus};
+use super::products::{AT_ONCE, Eight, Four, NONE, minus, only, plus, product};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
@@ -28,8 +27,8 @@ type Sums = [Eight; KNOWN_SUMS];
 /// Of one pixel, by its f, its a and a - A.
 #[inline]
 fn products([mean, known, apart]: &[Eight; 3]) -> Sums {
-    let times = |a: &Eight| lanes::zip(a, apart, |a, b| a * b);
-    let integral = lanes::zip(known, apart, |known, apart| known - apart);
+    let times = |a: &Eight| product(a, apart);
+    let integral = minus(known, apart);
     [*mean, *known, times(apart), times(mean), times(&integral)]
 }
 
@@ -70,7 +69,8 @@ fn coefficient([mean, known, square, mean_product, integral_product]: &Sums) -> 
 impl Batch<'_> {
     /// Computes the coefficient of each slot and channel.
     #[inline(always)]
-    pub(super) fn relate(&mut self, call: &Call<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+    pub(super) fn relate(&mut self, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+        let call = self.call;
         let channels = call.config.channels;
         let mut arena = arena.scratch();
         let inside = self.inside.as_flattened();
@@ -83,7 +83,7 @@ impl Batch<'_> {
             let mut largest = NONE;
             for (slot, inside) in inside.iter().enumerate() {
                 let pixels = self.pixels((slot / AT_ONCE, slot % AT_ONCE));
-                let integral = call.integrals(&pixels, channel);
+                let integral = call.gather(call.image.known_integrals, &pixels, (1, 0), channel);
                 largest = lanes::zip(&largest, &only(inside, &integral), Real::max);
                 let (at, row) = place(slot, channel);
                 if let Some(out) = self.integrals.get_mut(at) {
@@ -103,8 +103,8 @@ impl Batch<'_> {
                 let (mut mean, mut known) = (NONE, NONE);
                 let pixels = self.pixels((slot / AT_ONCE, slot % AT_ONCE));
                 for sample in 0..call.n {
-                    let each = [call.inputs(&pixels, sample, channel), call.known(&pixels, sample, channel)];
-                    for (sum, value) in [&mut mean, &mut known].into_iter().zip(each) {
+                    for (sum, values) in [(&mut mean, call.reader.inputs()), (&mut known, call.image.known)] {
+                        let value = call.gather(values, &pixels, (call.n, sample), channel);
                         *sum = plus(sum, &value.map(|value| value * inverse));
                     }
                 }
@@ -112,7 +112,7 @@ impl Batch<'_> {
                 let unit = lanes::zip(&integral, &largest, |integral, largest| Real::max(integral, largest * LEAST));
                 let unit = lanes::divisor(&unit);
                 let over = |value: &Eight| lanes::zip(value, &unit, |value, unit| black_box(value / unit));
-                let apart = lanes::zip(&known, &integral, |known, integral| known - integral);
+                let apart = minus(&known, &integral);
                 let values = [over(&mean), over(&known), over(&apart)];
                 let mut counts = inside;
                 for l in 0..LANES {

@@ -58,30 +58,14 @@ use choice::Choices;
 use edges::edges_len;
 use fit::fits_len;
 use sums::sums_len;
-
-/// Numbers of workspace that [`estimate_block`] needs for `pixels` pixels of `n` samples.
-///
-/// # Errors
-/// As for [`estimate_block`].
-pub fn block_workspace_len(config: &Config, pixels: usize, n: usize) -> Result<usize, Error> {
-    // So many need more memory than there is.
-    if pixels > Image::MAX_PIXELS as usize {
-        return Err(Error::Memory);
-    }
-    image_workspace_len(config, &Image::unordered(pixels), n)
-}
+use terms::Terms;
 
 /// Numbers of workspace that [`estimate_image`] needs for `n` samples in each pixel.
 ///
 /// # Errors
 /// As for [`estimate_image`]; [`Error::Memory`] if no memory could be large enough.
 pub fn image_workspace_len(config: &Config, image: &Image<'_>, n: usize) -> Result<usize, Error> {
-    check_supported(config, image)?;
-    let shape = config.checked_shape()?;
-    let shape = if n == 1 { shape.apart() } else { shape };
-    let windows = image.windows()?;
-    image.pixels()?;
-    Layout { config, image, windows, shape, n }.workspace_len().ok_or(Error::Memory)
+    Layout::new(config, image)?.of(n).workspace_len().ok_or(Error::Memory)
 }
 
 /// Which samples count must not depend on the pixel, the fit is of the channels, and other estimators share no fits.
@@ -92,37 +76,6 @@ fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
     let solver = matches!(config.solver, Solver::Auto | Solver::NormalEquations);
     let samples = config.color == Color::PerChannel && config.non_finite == NonFinite::Error;
     if estimator && !is_halved && solver && samples { Ok(()) } else { Err(Error::Unsupported) }
-}
-
-/// Estimates the integral of each of `pixels` pixels that are alike, in no order: [`estimate_image`] for
-/// [`Image::unordered`].
-///
-/// # Errors
-/// As for [`estimate_image`].
-///
-/// ```
-/// use noisefloor::control_variate::{Config, Samples, block_workspace_len, estimate_block};
-///
-/// // 32 pixels, one sample of f = u in each: the others' samples say how f varies.
-/// let u: [f32; 32] = core::array::from_fn(|pixel| ((pixel * 13) % 32) as f32 / 32.0);
-/// let config = Config::new(1, 1, 1);
-/// let mut workspace = vec![0.0; block_workspace_len(&config, 32, 1)?];
-/// estimate_block(&config, Samples::new(&u, &u), 32, &mut workspace, |pixel, estimate| {
-///     assert!((estimate.mean[0] - 0.5).abs() < 0.05, "pixel {pixel}");
-/// })?;
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
-pub fn estimate_block(
-    config: &Config,
-    samples: Samples<'_>,
-    pixels: usize,
-    workspace: &mut [f32],
-    out: impl FnMut(usize, Estimate),
-) -> Result<(), Error> {
-    if pixels == 0 {
-        return Err(Error::NoSamples);
-    }
-    estimate_image(config, &Image::unordered(pixels), samples, workspace, out)
 }
 
 /// Estimates every pixel of an image from `samples.f.len() / (pixels channels)` samples in each, pixel after pixel.
@@ -145,24 +98,13 @@ pub fn estimate_block(
 /// let (config, image) = (Config::new(1, 1, 1), Image::new(8, 8));
 /// let mut workspace = vec![0.0; image_workspace_len(&config, &image, 1)?];
 /// let mut pixels = [0.0; 64];
-/// estimate_image(&config, &image, Samples::new(&u, &f), &mut workspace, |pixel, estimate| {
+/// estimate_image(&config, &image, Samples::new(&u, &f), &mut workspace, &mut |pixel, estimate| {
 ///     pixels[pixel] = estimate.mean[0];
 /// })?;
 /// assert!((pixels[10] - 2.5).abs() < 0.05);
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
 pub fn estimate_image(
-    config: &Config,
-    image: &Image<'_>,
-    samples: Samples<'_>,
-    workspace: &mut [f32],
-    mut out: impl FnMut(usize, Estimate),
-) -> Result<(), Error> {
-    compiled(config, image, samples, workspace, &mut out)
-}
-
-/// What calls of [`estimate_image`] with one `out` or another have in common: compiled here, not by crates that call.
-fn compiled(
     config: &Config,
     image: &Image<'_>,
     samples: Samples<'_>,
@@ -183,30 +125,35 @@ pub fn estimate_image_by<P: Processor>(
     workspace: &mut [f32],
     out: &mut dyn FnMut(usize, Estimate),
 ) -> Result<(), Error> {
-    let shape = config.checked_shape()?;
-    check_supported(config, image)?;
+    let layout = Layout::new(config, image)?;
     let reader = Reader::new(config, samples)?;
-    let (windows, pixels) = (image.windows()?, image.pixels()?);
-    image.check(config)?;
-    let n = reader.len() / pixels.max(1);
-    if n == 0 || n * pixels != reader.len() {
+    image.check(config, layout.pixels, samples.f.len())?;
+    let n = reader.len() / layout.pixels.max(1);
+    if n * layout.pixels != reader.len() {
         return Err(Error::Range);
     }
-    let shape = if n == 1 { shape.apart() } else { shape };
+    let layout = layout.of(n);
     let mut basis = Basis::empty();
-    basis.set(config.basis, shape)?;
-    if image.has_known() && image.known.len() != samples.f.len() {
-        return Err(Error::Range);
-    }
+    basis.set(config.basis, layout.shape)?;
     reader.check()?;
-    let layout = Layout { config, image, windows, shape, n };
     if workspace.len() < layout.workspace_len().ok_or(Error::Memory)? {
         return Err(Error::Memory);
     }
     Call { layout, basis: &basis, reader }.run::<P>(&mut Arena::new(workspace), out)
 }
 
-impl Layout<'_> {
+impl<'a> Layout<'a> {
+    fn new(config: &'a Config, image: &'a Image<'a>) -> Result<Self, Error> {
+        let shape = config.checked_shape()?;
+        check_supported(config, image)?;
+        Ok(Self { config, image, windows: image.windows()?, pixels: image.pixels()?, shape, n: 0 })
+    }
+
+    /// The same, of so many samples in each pixel.
+    fn of(self, n: usize) -> Self {
+        Self { shape: if n == 1 { self.shape.apart() } else { self.shape }, n, ..self }
+    }
+
     /// How many rows of windows are worked on before pixels are written, and how many rows of pixels those touch.
     fn band(&self) -> [usize; 2] {
         let [across, down] = self.windows.counts();
@@ -222,14 +169,14 @@ impl Layout<'_> {
 
     fn workspace_len(&self) -> Option<usize> {
         // More samples than 32 bits count need more memory than there is.
-        u32::try_from(self.image.pixels().ok()?.checked_mul(self.n)?).ok()?;
+        u32::try_from(self.pixels.checked_mul(self.n)?).ok()?;
         let (eights, frames) = (self.eights(), self.windows.frames());
         let [_, rows] = self.band();
         let channels = self.config.channels;
         let sums = eights.checked_mul(rows)?.checked_mul(frames)?.checked_mul(sums_len(channels) * LANES)?;
         let pixels = self.windows.pixels();
         let slots = if self.is_joined() { pixels.div_ceil(LANES) } else { pixels };
-        let terms = self.terms(pixels).with_edges(self.has_edges());
+        let terms = Terms::new(self, pixels, self.has_edges());
         let batch = batch_len(self, &terms, slots)?.checked_add(fits_len(self, &terms, slots)?)?;
         let batch = batch.checked_add(edges_len(self, &terms, slots)?)?;
         let choices = Choices::new(self, &terms).len().checked_mul(LANES)?;

@@ -8,9 +8,10 @@ use super::choice::{Choices, Shares, Spreads};
 use super::edges::Edges;
 use super::fit::Fits;
 use super::groups::{Group, Groups};
-use super::products::{AT_ONCE, COLOURS, Colours, NONE, plus};
+use super::products::{AT_ONCE, COLOURS, Colours, NONE, minus, plus};
 use super::steps;
 use super::sums::Band;
+use super::terms::Terms;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
@@ -45,7 +46,7 @@ impl Call<'_> {
                 self.divide(first, end, &mut groups);
                 self.find_edges(&mut groups);
                 self.fit::<P>(&mut groups, arena)?;
-                steps::add::<P>(self, first, &groups, &mut band);
+                steps::add::<P>(self, &groups, &mut band);
             }
             let end = if last < down { self.windows.top(last) } else { wanted.y + wanted.height };
             for frame in 0..frames {
@@ -61,29 +62,22 @@ impl Call<'_> {
     /// Fits to all groups: first to all of their pixels, then, where some are too bright, to the others.
     pub(super) fn fit<P: Processor>(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
         let later = if self.is_single_fit() { 0 } else { self.turns() };
-        let kinds = if self.fits_without_edges() { 0 } else { 1 }..if self.has_edges() { 2 } else { 1 };
-        for (pass, kind) in (0..=later).flat_map(|pass| kinds.clone().map(move |kind| (pass, kind))) {
+        let all = self.fits_without_edges();
+        for (pass, has_edges) in (0..=later).flat_map(|pass| [(pass, false), (pass, true)]) {
             let turn = pass.checked_sub(1);
             let mut place = 0;
-            // Groups of one size, which come one after the other, have the same.
-            let mut last = (0, 0);
             loop {
                 let mut lanes = [Group::default(); LANES];
-                let mut used = 0;
-                let mut columns = 0;
+                let (mut used, mut columns) = (0, 0);
                 // Eight, or fewer if the next have other columns.
-                while let Some(group) = groups.by_size(self, place).filter(|_| used < LANES) {
-                    let is_kind = group.has_edges == (kind == 1);
-                    let is_wanted = is_kind && turn.is_none_or(|turn| groups.has_limits(self, &group, turn));
-                    if last.0 != group.len {
-                        last = (group.len, self.terms(group.len).columns());
-                    }
-                    if is_wanted && used > 0 && last.1 != columns {
-                        break;
-                    }
-                    place += 1;
-                    if is_wanted {
-                        columns = last.1;
+                while let Some(group) = groups.by_size(place).filter(|_| used < LANES) {
+                    let is_kind = group.has_edges == has_edges && (has_edges || all);
+                    if is_kind && turn.is_none_or(|turn| groups.has_limits(&group, turn)) {
+                        let own = Terms::new(self, group.len, false).columns();
+                        if used > 0 && own != columns {
+                            break;
+                        }
+                        columns = own;
                         if self.is_joined() {
                             lanes = [group; LANES];
                         } else if let Some(lane) = lanes.get_mut(used) {
@@ -91,11 +85,12 @@ impl Call<'_> {
                         }
                         used += 1;
                     }
+                    place += 1;
                 }
                 if used == 0 {
                     break;
                 }
-                self.batch::<P>(lanes, turn, groups, &mut arena.scratch())?;
+                self.batch::<P>(lanes, turn, groups, arena)?;
             }
         }
         Ok(())
@@ -109,24 +104,24 @@ impl Call<'_> {
         groups: &mut Groups<'_>,
         arena: &mut Arena<'_, f32>,
     ) -> Result<(), Error> {
-        let channels = self.config.channels;
+        let arena = &mut arena.scratch();
         let [Group { len, has_edges, .. }, ..] = lanes;
-        let terms = self.terms(len).with_edges(has_edges);
-        let mut batch = Batch::new(self, &terms, lanes, arena)?;
-        steps::survey::<P>(&mut batch, self, groups, &terms);
+        let terms = Terms::new(self, len, has_edges);
+        let mut batch = Batch::new(self, terms, lanes, arena)?;
+        steps::survey::<P>(&mut batch, groups);
         if let Some(turn) = turn {
-            batch.leave_out(channels, |group| groups.limits(self, group, turn));
+            batch.leave_out(|group| groups.limits(group, turn));
         }
         if self.image.has_known() {
-            steps::relate::<P>(&mut batch, self, arena)?;
+            steps::relate::<P>(&mut batch, arena)?;
         }
-        steps::load::<P>(&mut batch, self, &terms, arena)?;
-        let mut fits = Fits::new(self, &terms, &batch, arena)?;
-        let mut edges = if has_edges { Some(Edges::new(self, &terms, &batch, arena)?) } else { None };
+        steps::load::<P>(&mut batch, arena)?;
+        let mut fits = Fits::new(&batch, arena)?;
+        let mut edges = if has_edges { Some(Edges::new(&batch, arena)?) } else { None };
         if let Some(edges) = &mut edges {
-            steps::load_edges::<P>(edges, self, &batch);
+            steps::load_edges::<P>(edges, &batch);
         }
-        let choices = Choices::new(self, &terms);
+        let choices = Choices::new(self, &batch.terms);
         let mut shares = Shares::last(choices, arena)?;
         // Halves choose for each other, then fits to all correct; or fits to all do both.
         let turns = self.turns();
@@ -136,26 +131,25 @@ impl Call<'_> {
                 continue;
             }
             let judges = if is_last { Colours::ALL } else { Colours::HALVES[(step + 1) % 2] };
-            steps::correct::<P>(&mut fits, self, &terms, &batch, judges);
-            let mut present = NONE;
-            if let Some(edges) = &mut edges {
-                steps::correct_edges::<P>(edges, &batch, judges, &mut fits);
-                present = edges.present;
-            }
-            let spreads = steps::spreads::<P>(choices, &terms, &batch, &fits, judges, &mut arena.scratch())?;
+            steps::correct::<P>(&mut fits, &batch, judges);
+            let present = match &mut edges {
+                Some(edges) => steps::correct_edges::<P>(edges, &batch, judges, &mut fits),
+                None => NONE,
+            };
+            let spreads = steps::spreads::<P>(choices, &batch, &fits, judges, &mut arena.scratch())?;
             let chooses = !self.is_single_fit() && (turns == 1 || !is_last);
             if chooses {
                 let colours = if turns == 1 { COLOURS } else { 0 };
                 steps::choose::<P>(&spreads, colours, step, self.config.stratified, &present, &mut shares);
                 if turn.is_none() {
-                    steps::find_limits::<P>(self, groups, &batch, (step, judges), &shares);
+                    steps::find_limits::<P>(&batch, groups, (step, judges), &shares);
                 }
             }
             if is_last {
                 if turn.is_none() {
                     self.tell(groups, &batch, &spreads, &shares);
                 }
-                steps::put::<P>(self, groups, &batch, &fits, turn, &shares);
+                steps::put::<P>(&batch, groups, &fits, turn, &shares);
             }
         }
         Ok(())
@@ -176,7 +170,7 @@ impl Call<'_> {
         }
         let freedom = lanes::divisor(&spreads.freedom);
         for (lane, group) in batch.lanes.iter().enumerate().filter(|(_, group)| group.len > 0) {
-            let told = groups.told_mut(self, group);
+            let told = groups.told_mut(group);
             let Some(([gain, has_error], errors)) = told.split_first_chunk_mut() else { continue };
             // Without freedom there is no spread to tell the error from.
             let is_known = !by_groups || spreads.freedom[lane % LANES] > 0.0;
@@ -190,35 +184,30 @@ impl Call<'_> {
                 *error = if !by_groups {
                     ratio[lane % LANES].sqrt()
                 } else if is_known {
-                    spread.sqrt().scale(units.exponents[lane % LANES])
+                    spread.sqrt() * units.powers[lane % LANES]
                 } else {
                     0.0
                 };
             }
         }
     }
+}
 
+impl Batch<'_> {
     /// Keeps the corrections of the pixels that are chosen for in a turn.
     #[inline(always)]
-    pub(super) fn put(
-        &self,
-        groups: &mut Groups<'_>,
-        batch: &Batch<'_>,
-        fits: &Fits<'_>,
-        turn: Option<usize>,
-        shares: &Shares<'_>,
-    ) {
-        let channels = self.config.channels;
-        for block in 0..batch.inside.len() {
-            let half = if self.turns() == 1 { 0 } else { usize::from(Colours::HALVES[1].has(block)) };
+    pub(super) fn put(&self, groups: &mut Groups<'_>, fits: &Fits<'_>, turn: Option<usize>, shares: &Shares<'_>) {
+        let (channels, turns) = (self.call.config.channels, self.call.turns());
+        for block in 0..self.inside.len() {
+            let half = if turns == 1 { 0 } else { usize::from(Colours::HALVES[1].has(block)) };
             if turn.is_some_and(|turn| turn != half) {
                 continue;
             }
-            for (channel, units) in batch.units.iter().enumerate().take(channels) {
+            for (channel, units) in self.units.iter().enumerate().take(channels) {
                 let mut sum = [NONE; AT_ONCE];
-                let means = row_at(batch.means, batch.values, block);
+                let means = row_at(self.means, self.values, block);
                 for (row, sum) in sum.iter_mut().enumerate() {
-                    let time = if self.turns() == 1 { 1 + batch.colour((block, row)) } else { half };
+                    let time = if turns == 1 { 1 + self.colour((block, row)) } else { half };
                     for (kind, shares) in rows(shares.of(time, channel), 1 + fits.count).enumerate() {
                         let Some((plain, shares)) = shares.split_first() else { continue };
                         let value = channel + kind * channels;
@@ -226,20 +215,19 @@ impl Call<'_> {
                             *sum = lanes::plus_product(*sum, correction[row % AT_ONCE], *share);
                         }
                         if let (1, Some(mean), Some(other)) = (kind, means.get(channel), means.get(value)) {
-                            let known =
-                                lanes::zip(&other[row % AT_ONCE], &mean[row % AT_ONCE], |other, mean| other - mean);
+                            let known = minus(&other[row % AT_ONCE], &mean[row % AT_ONCE]);
                             let share = shares.iter().fold(*plain, |sum, share| plus(&sum, share));
                             *sum = lanes::plus_product(*sum, known, share);
                         }
                     }
                 }
                 // What is too large is no number, and found at the end.
-                let powers = units.powers();
-                let sum = sum
-                    .map(|sum| lanes::zip(&sum, &powers, |sum, power| if sum.is_finite() { sum * power } else { 0.0 }));
-                for (lane, group) in batch.lanes.iter().enumerate() {
+                let sum = sum.map(|sum| {
+                    lanes::zip(&sum, &units.powers, |sum, power| if sum.is_finite() { sum * power } else { 0.0 })
+                });
+                for (lane, group) in self.lanes.iter().enumerate() {
                     for (row, sum) in sum.iter().enumerate() {
-                        let index = batch.member((block, row), lane);
+                        let index = self.member((block, row), lane);
                         let at = (group.start + index) * channels + channel;
                         if index < group.len
                             && let Some(out) = groups.corrections.get_mut(at)
@@ -254,21 +242,15 @@ impl Call<'_> {
 
     /// Finds the limits of the groups' values for a turn, where any is too far from those of the `judges`.
     #[inline]
-    pub(super) fn find_limits(
-        &self,
-        groups: &mut Groups<'_>,
-        batch: &Batch<'_>,
-        (turn, judges): (usize, Colours),
-        shares: &Shares<'_>,
-    ) {
-        let channels = self.config.channels;
+    pub(super) fn find_limits(&self, groups: &mut Groups<'_>, (turn, judges): (usize, Colours), shares: &Shares<'_>) {
+        let channels = self.call.config.channels;
         for channel in 0..channels {
             let trust = at(shares.of(turn, channel), 0);
-            let limits = bright::limits(batch, channels, channel, judges, &trust);
-            for (lane, group) in batch.lanes.iter().enumerate().filter(|(_, group)| group.len > 0) {
-                let out = groups.limits_mut(self, group, turn);
+            let limits = bright::limits(self, channel, judges, &trust);
+            for (lane, group) in self.lanes.iter().enumerate().filter(|(_, group)| group.len > 0) {
+                let out = groups.limits_mut(group, turn);
                 if let Some([lowest, highest]) = rows_mut(out, 2).nth(channel) {
-                    [*lowest, *highest] = limits[lane % LANES].unwrap_or([f32::NEG_INFINITY, f32::INFINITY]);
+                    [*lowest, *highest] = limits[lane % LANES];
                 }
             }
         }

@@ -167,38 +167,25 @@ impl Image<'_> {
 
     /// Where its windows lie.
     pub(super) fn windows(&self) -> Result<Windows, Error> {
-        let all = Rectangle::new(0, 0, self.width, self.height);
-        if self.unordered {
-            let pixels = self.pixels()?;
-            let fits = pixels > 0 && (self.surfaces.is_empty() || pixels <= Self::MAX_WINDOW);
-            let is_whole = self.given.is_empty() && self.wanted.is_empty();
-            let extent = [pixels, 1, 1];
-            let (whole, one) = (Rectangle::new(0, 0, pixels, 1), Rectangle::new(0, 0, 1, 1));
-            let windows = Windows {
-                extent,
-                stride: pixels,
-                image: extent,
-                is_ordered: false,
-                given: whole,
-                wanted: whole,
-                used: one,
-            };
-            return if fits && is_whole { Ok(windows) } else { Err(Error::Range) };
-        }
+        // Pixels without places are a row, and its own window.
+        let image = if self.unordered { [self.pixels()?, 1, 1] } else { [self.width, self.height, self.frames()] };
+        let [across, down, frames] = image;
+        let all = Rectangle::new(0, 0, across, down);
         let given = if self.given.is_empty() { all } else { self.given };
         let wanted = if self.wanted.is_empty() { given } else { self.wanted };
-        let side = if self.window == 0 { 8 } else { self.window };
-        let stride = if self.stride == 0 { side.div_ceil(2) } else { self.stride };
-        let (width, height) = (side.min(self.width), side.min(self.height));
-        let pixels = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(self.frames()));
-        let fits = pixels.is_some_and(|pixels| (1..=Self::MAX_WINDOW).contains(&pixels));
+        let or = |number: usize, otherwise: usize| if number == 0 { otherwise } else { number };
+        let side = if self.unordered { across } else { or(self.window, 8) };
+        let stride = if self.unordered { across } else { or(self.stride, side.div_ceil(2)) };
+        let (width, height) = (side.min(across), side.min(down));
+        let pixels = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(frames)).ok_or(Error::Range)?;
+        let is_limited = !self.unordered || !self.surfaces.is_empty();
+        let is_whole = self.given.is_empty() && self.wanted.is_empty();
+        let fits = pixels > 0 && !(is_limited && pixels > Self::MAX_WINDOW) && (is_whole || !self.unordered);
         if !fits || stride > side || !given.is_within(&all) || !wanted.is_within(&given) {
             return Err(Error::Range);
         }
-        let image = [self.width, self.height, self.frames()];
-        let extent = [width, height, self.frames()];
-        let mut windows =
-            Windows { extent, stride, image, is_ordered: true, given, wanted, used: Rectangle::default() };
+        let (extent, is_ordered) = ([width, height, frames], !self.unordered);
+        let mut windows = Windows { extent, stride, image, is_ordered, given, wanted, used: Rectangle::default() };
         windows.used = windows.with_pixels(&wanted);
         if windows.needed().is_within(&given) { Ok(windows) } else { Err(Error::Range) }
     }
@@ -215,15 +202,13 @@ impl Image<'_> {
         pixels.filter(|&pixels| pixels <= Self::MAX_PIXELS as usize).ok_or(Error::Range)
     }
 
-    /// Checks everything but the windows.
-    pub(super) fn check(&self, config: &Config) -> Result<(), Error> {
-        let pixels = self.pixels()?;
-        let fits = |len: usize, each: usize| len == 0 || pixels.checked_mul(each) == Some(len);
-        if !fits(self.surfaces.len(), 1) || !fits(self.factors.len(), config.channels) {
-            return Err(Error::Range);
-        }
-        let has_known = !self.known.is_empty();
-        if has_known == self.known_integrals.is_empty() || !fits(self.known_integrals.len(), config.channels) {
+    /// Checks the arrays, for so many pixels and numbers of samples.
+    pub(super) fn check(&self, config: &Config, pixels: usize, values: usize) -> Result<(), Error> {
+        let fits = |array: &[f32], len: Option<usize>| array.is_empty() || len == Some(array.len());
+        let each = pixels.checked_mul(config.channels);
+        let surfaces_fit = self.surfaces.is_empty() || self.surfaces.len() == pixels;
+        let known_fits = fits(self.known, Some(values)) && self.known.is_empty() == self.known_integrals.is_empty();
+        if !surfaces_fit || !known_fits || !fits(self.factors, each) || !fits(self.known_integrals, each) {
             return Err(Error::Range);
         }
         let values = [self.factors, self.known, self.known_integrals].into_iter().flatten();

@@ -37,6 +37,16 @@ pub(super) fn plus(a: &Eight, b: &Eight) -> Eight {
     lanes::zip(a, b, |a, b| a + b)
 }
 
+#[inline(always)]
+pub(super) fn minus(a: &Eight, b: &Eight) -> Eight {
+    lanes::zip(a, b, |a, b| a - b)
+}
+
+#[inline(always)]
+pub(super) fn product(a: &Eight, b: &Eight) -> Eight {
+    lanes::zip(a, b, |a, b| a * b)
+}
+
 /// The sum of four.
 #[inline(always)]
 pub(super) fn total([a, b, c, d]: &Four) -> Eight {
@@ -56,7 +66,7 @@ pub(super) fn zip_four(a: &Four, b: &Four, f: impl Fn(&Eight, &Eight) -> Eight) 
 /// The products of four numbers with others.
 #[inline(always)]
 pub(super) fn times(a: &Four, b: &Four) -> Four {
-    zip_four(a, b, |a, b| lanes::zip(a, b, |a, b| a * b))
+    zip_four(a, b, product)
 }
 
 /// A sum and four products, one after the other.
@@ -139,12 +149,11 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Sums of products, part after part; of slices each part holds those of every slice.
+/// Sums of products, part after part; of slices, those of every slice of the first part, then of the next.
 pub(super) struct Sums<'a> {
     all: &'a mut [Eight],
     columns: usize,
     values: usize,
-    slices: usize,
 }
 
 /// Those of one part: of columns with columns, packed; of each value with columns, and with itself.
@@ -161,19 +170,7 @@ impl<'a> Sums<'a> {
     }
 
     pub(super) fn new(parts: usize, columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        Self::sliced(parts, 1, columns, values, arena)
-    }
-
-    /// Room for parts of so many slices.
-    pub(super) fn sliced(
-        parts: usize,
-        slices: usize,
-        columns: usize,
-        values: usize,
-        arena: &mut Arena<'a, f32>,
-    ) -> Result<Self, Error> {
-        let all = arena.take_lanes(parts * slices * Self::len(columns, values))?;
-        Ok(Self { all, columns, values, slices })
+        Ok(Self { all: arena.take_lanes(parts * Self::len(columns, values))?, columns, values })
     }
 
     pub(super) fn empty(&mut self) {
@@ -221,7 +218,7 @@ impl<'a> Sums<'a> {
         }
     }
 
-    /// Adds four rows of samples, each to the sums of its lanes' slices. `products` is scratch, of one slice.
+    /// Adds four rows of samples, each to the sums of its lanes' slices, which follow a part. `products` is scratch.
     #[inline(always)]
     pub(super) fn add_sliced(
         &mut self,
@@ -231,12 +228,12 @@ impl<'a> Sums<'a> {
         values: &[Four],
         products: &mut [Eight],
     ) {
-        let (len, slices) = (Self::len(self.columns, self.values), self.slices);
+        let len = Self::len(self.columns, self.values);
         for (row, picked) in picked.iter().enumerate() {
             let mut out = products.iter_mut();
             let mut put = |a: &Eight, b: &Eight| {
                 if let Some(out) = out.next() {
-                    *out = lanes::zip(a, b, |a, b| a * b);
+                    *out = product(a, b);
                 }
                 lanes::keep_together();
             };
@@ -254,7 +251,7 @@ impl<'a> Sums<'a> {
                 put(&value[row], &value[row]);
             }
             for lane in 0..LANES {
-                let sums = row_at_mut(self.all, len, part * slices + picked[lane] as usize);
+                let sums = row_at_mut(self.all, len, part + picked[lane] as usize);
                 for (sum, product) in sums.iter_mut().zip(&*products) {
                     sum[lane] += product[lane];
                 }
@@ -262,28 +259,18 @@ impl<'a> Sums<'a> {
         }
     }
 
-    /// Makes its one part the sum of another's parts of some colours.
+    /// Makes it the sum of as large parts of another, those of some colours.
     #[inline(always)]
     pub(super) fn set_total(&mut self, of: &Sums<'_>, colours: Colours) {
-        let len = self.slices * Self::len(self.columns, self.values);
-        let parts = rows(of.all, len).enumerate().filter(|&(part, _)| colours.has(part));
-        let mut parts = parts.map(|(_, sums)| sums);
-        match [parts.next(), parts.next(), parts.next(), parts.next()] {
-            // All but one colour, where each has a fit of its own.
-            [Some(a), Some(b), Some(c), None] => {
-                for (out, ((a, b), c)) in self.all.iter_mut().zip(a.iter().zip(b).zip(c)) {
-                    *out = plus(&plus(a, b), c);
-                    lanes::keep_together();
-                }
+        let parts = rows(of.all, self.all.len()).enumerate().filter(|&(part, _)| colours.has(part));
+        for (index, (_, sums)) in parts.enumerate() {
+            if index == 0 {
+                copy(self.all, sums);
+                continue;
             }
-            [first, others @ ..] => {
-                copy(self.all, first.unwrap_or_default());
-                for sums in others.into_iter().flatten() {
-                    for (out, sum) in self.all.iter_mut().zip(sums) {
-                        *out = plus(out, sum);
-                        lanes::keep_together();
-                    }
-                }
+            for (out, sum) in self.all.iter_mut().zip(sums) {
+                *out = plus(out, sum);
+                lanes::keep_together();
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::batch::Batch;
 use super::call::Call;
-use super::products::{AT_ONCE, AT_ONCE_LANES, Eight, Four, NONE, Rows};
+use super::products::{AT_ONCE, AT_ONCE_LANES, Eight, Four, NONE, Rows, minus};
 use crate::lanes::{self, LANES};
 use crate::matrix::{at, first_mut, from, halves_mut, row_at};
 use crate::real::{Real, saturate};
@@ -27,27 +27,15 @@ impl Call<'_> {
         [low, high]
     }
 
-    /// A channel of a sample of each pixel, divided by the pixels' factors.
+    /// A channel of one of a pixel's so many rows of numbers, for eight pixels, divided by the pixels' factors.
     #[inline]
-    pub(super) fn inputs(&self, pixels: &[usize; LANES], sample: usize, channel: usize) -> Eight {
-        self.gather(self.reader.inputs(), pixels, (self.n, sample), channel)
-    }
-
-    /// What is known of it, divided likewise.
-    #[inline]
-    pub(super) fn known(&self, pixels: &[usize; LANES], sample: usize, channel: usize) -> Eight {
-        self.gather(self.image.known, pixels, (self.n, sample), channel)
-    }
-
-    /// The integral of what is known, divided likewise.
-    #[inline]
-    pub(super) fn integrals(&self, pixels: &[usize; LANES], channel: usize) -> Eight {
-        self.gather(self.image.known_integrals, pixels, (1, 0), channel)
-    }
-
-    /// One of a pixel's so many rows of numbers, for eight pixels.
-    #[inline]
-    fn gather(&self, rows: &[f32], pixels: &[usize; LANES], (each, row): (usize, usize), channel: usize) -> Eight {
+    pub(super) fn gather(
+        &self,
+        rows: &[f32],
+        pixels: &[usize; LANES],
+        (each, row): (usize, usize),
+        channel: usize,
+    ) -> Eight {
         let channels = self.config.channels;
         let mut values = pixels.map(|pixel| at(rows, (pixel * each + row) * channels + channel));
         self.divide_by_factors(pixels, channel, &mut values);
@@ -58,7 +46,7 @@ impl Call<'_> {
     fn divide_by_factors(&self, pixels: &[usize; LANES], channel: usize, values: &mut Eight) {
         if !self.image.factors.is_empty() {
             for (value, pixel) in values.iter_mut().zip(pixels) {
-                *value = self.over_factor(*value, *pixel, channel);
+                *value = saturate(f64::from(*value) / self.factor(*pixel, channel));
             }
         }
     }
@@ -95,11 +83,6 @@ impl Call<'_> {
             }
         }
         out.iter_mut().for_each(|values| self.divide_by_factors(pixels, channel, values));
-    }
-
-    #[inline]
-    fn over_factor(&self, value: f32, pixel: usize, channel: usize) -> f32 {
-        saturate(f64::from(value) / self.factor(pixel, channel))
     }
 
     /// What a pixel's values are divided by. Black says nothing about what it multiplies: 1.
@@ -170,7 +153,7 @@ impl Call<'_> {
             let out = part_mut(out, row, samples.len());
             self.put_rows(self.image.known, pixels, (self.n, samples.start), channel, out);
             for (out, value) in out.iter_mut().zip(from(values, row)) {
-                let apart = lanes::zip(out, &integral[slot % AT_ONCE], |known, integral| known - integral);
+                let apart = minus(out, &integral[slot % AT_ONCE]);
                 *out = lanes::minus_product(*value, coefficient[slot % AT_ONCE], apart);
             }
         }

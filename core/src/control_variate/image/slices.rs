@@ -8,8 +8,7 @@
 //! the difference.
 
 use super::batch::{Batch, MAX_FIXED};
-use super::call::Call;
-use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, only, plus};
+use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, minus, only, plus, product};
 use super::terms::{SINGULAR, Terms, strength};
 use crate::arena::Arena;
 use crate::error::Error;
@@ -22,17 +21,10 @@ use core::ops::Range;
 
 /// Fits of candidates that have as many own columns of each slice.
 pub(super) struct Apart<'a> {
-    slices: usize,
-    values: usize,
-    fits: usize,
     /// Columns that slices share, constant and axes among them.
     width: usize,
     /// Own columns of a slice.
     own: usize,
-    strength: f32,
-    /// The penalty of a function of degree 1.
-    linear: f32,
-    controls: Range<usize>,
     /// The sums of each slice.
     totals: Sums<'a>,
     /// For each slice rows of L, as wide as its own columns: of these, with 1 / D on the diagonal, of the shared ones,
@@ -89,24 +81,13 @@ impl<'a> Apart<'a> {
         slices * each + border + order * (1 + terms.all_own()) + width + AT_ONCE * width + coefficients
     }
 
-    pub(super) fn new(
-        terms: &Terms,
-        values: usize,
-        call: &Call<'_>,
-        arena: &mut Arena<'a, f32>,
-    ) -> Result<Self, Error> {
+    pub(super) fn new(terms: &Terms, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
         let (slices, width, order) = (terms.slices, terms.columns(), Self::order(terms, values));
         let fits = terms.ends.len();
         Ok(Self {
-            slices,
-            values,
-            fits,
             width,
             own: 0,
-            strength: strength(call.config),
-            linear: call.shape.linear() as f32,
-            controls: terms.fixed()..terms.fixed() + call.config.controls,
-            totals: Sums::sliced(1, slices, width, values, arena)?,
+            totals: Sums::new(slices, width, values, arena)?,
             blocks: arena.take_lanes(slices * order * terms.all_own())?,
             border: arena.take_lanes(packed_len(width))?,
             sides: arena.take_lanes((values + terms.fixed()) * width)?,
@@ -120,30 +101,24 @@ impl<'a> Apart<'a> {
 
     /// Corrects every pixel of the colours `taken` by fits to the others of them.
     #[inline(always)]
-    pub(super) fn correct(
-        &mut self,
-        terms: &Terms,
-        batch: &Batch<'_>,
-        penalties: &[f32],
-        taken: Colours,
-        corrections: &mut [Four],
-    ) {
+    pub(super) fn correct(&mut self, batch: &Batch<'_>, penalties: &[f32], taken: Colours, corrections: &mut [Four]) {
+        let terms = &batch.terms;
         self.totals.set_total(&batch.between, taken);
         let mut begin = 0;
-        for fit in 0..self.fits {
+        for fit in 0..terms.ends.len() {
             // The last of those with as many own columns has all the shared ones that these have.
             if terms.own.get(fit) == terms.own.get(fit + 1) {
                 continue;
             }
             (self.own, self.width) = (at(&terms.own, fit), at(&terms.ends, fit));
-            self.factor(terms, penalties);
+            self.factor(batch, penalties);
             for fit in begin..=fit {
-                for value in 0..self.values {
-                    self.solve(terms, value, fit);
+                for value in 0..batch.values {
+                    self.solve(batch, value, fit);
                 }
             }
             for block in batch.blocks(taken) {
-                self.apply(terms, batch, block, begin..fit + 1, corrections);
+                self.apply(batch, block, begin..fit + 1, corrections);
             }
             begin = fit + 1;
         }
@@ -151,41 +126,36 @@ impl<'a> Apart<'a> {
 
     /// Lanes of a slice's block.
     #[inline]
-    fn block_len(&self, terms: &Terms) -> usize {
-        packed_len(self.own) + (self.width + self.values + terms.fixed()) * self.own
+    fn block_len(&self, batch: &Batch<'_>) -> usize {
+        packed_len(self.own) + (self.width + batch.values + batch.terms.fixed()) * self.own
     }
 
     #[inline(always)]
-    fn factor(&mut self, terms: &Terms, penalties: &[f32]) {
-        let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(terms));
+    fn factor(&mut self, batch: &Batch<'_>, penalties: &[f32]) {
+        let (terms, values, slices) = (&batch.terms, batch.values, batch.terms.slices);
+        let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(batch));
+        let linear = batch.call.shape.linear() as f32;
         let diagonal = |totals: &Sums<'_>, column: usize| {
-            let each = (0..self.slices).map(|slice| at(row(totals.part(slice).gram, column), column));
+            let each = (0..slices).map(|slice| at(row(totals.part(slice).gram, column), column));
             each.fold(NONE, |sum, square| plus(&sum, &square))
         };
         let count = diagonal(&self.totals, 0);
-        let mut scale = NONE;
-        for l in 0..LANES {
-            scale[l] = self.strength * Real::max(count[l] - 1.0, 0.0);
-        }
+        let strength = strength(batch.call.config);
+        let scale = count.map(|count| strength * Real::max(count - 1.0, 0.0));
         for (j, penalty) in penalties.iter().enumerate().take(width) {
             let out = row_mut(self.border, j);
             out.iter_mut().for_each(|out| *out = NONE);
-            let Some(out) = out.last_mut() else { continue };
-            *out = lanes::plus_product(NONE, scale, [*penalty; LANES]);
-            if self.controls.contains(&j) {
-                // What a control function is measured in is its maker's choice.
-                let square = diagonal(&self.totals, j);
-                let unit = lanes::zip(&square, &lanes::divisor(&count), |square, count| square / count);
-                *out = lanes::zip(out, &unit, |penalty, unit| penalty * unit);
+            if let Some(out) = out.last_mut() {
+                *out = terms.ridge(j, *penalty, &scale, &diagonal(&self.totals, j), &count);
             }
         }
         for (i, side) in rows_mut(self.sides, width).enumerate() {
             side.iter_mut().for_each(|out| *out = NONE);
-            if let Some(out) = i.checked_sub(self.values).and_then(|unit| side.get_mut(unit)) {
+            if let Some(out) = i.checked_sub(values).and_then(|unit| side.get_mut(unit)) {
                 *out = [1.0; LANES];
             }
         }
-        for slice in 0..self.slices {
+        for slice in 0..slices {
             let Part { gram, sides, .. } = self.totals.part(slice);
             let (triangle, rows) = halves_mut(row_at_mut(self.blocks, len, slice), packed_len(own));
             for i in 0..own {
@@ -195,13 +165,13 @@ impl<'a> Apart<'a> {
                     *out = symmetric(gram, source, terms.source(k).0);
                 }
                 if let Some(out) = line.last_mut() {
-                    let penalty = terms.own_penalty(i, penalties, self.linear) / factor;
+                    let penalty = terms.own_penalty(i, penalties, linear) / factor;
                     *out = lanes::plus_product(*out, scale, [penalty; LANES]);
                 }
             }
             ldlt::factor_each(triangle, own);
             let solved = first_mut(self.solved, own);
-            for i in 0..width + self.values + fixed {
+            for i in 0..width + values + fixed {
                 let (sums, out) = match i.checked_sub(width) {
                     None => (row(gram, i), row_mut(self.border, i)),
                     Some(side) => (row_at(sides, terms.columns(), side), row_at_mut(self.sides, width, side)),
@@ -210,10 +180,10 @@ impl<'a> Apart<'a> {
                     let other = terms.source(k).0;
                     *out = if i < width {
                         symmetric(gram, i, other)
-                    } else if i < width + self.values {
+                    } else if i < width + values {
                         at(sums, other)
                     } else {
-                        [if other == i - width - self.values { 1.0 / self.slices as f32 } else { 0.0 }; LANES]
+                        [if other == i - width - values { 1.0 / slices as f32 } else { 0.0 }; LANES]
                     };
                 }
                 for (k, l) in row_at_mut(rows, own, i).iter_mut().enumerate() {
@@ -223,7 +193,7 @@ impl<'a> Apart<'a> {
                         break;
                     };
                     *out = lanes::minus_products(*out, before, left);
-                    *l = lanes::zip(out, inverse, |value, inverse| value * inverse);
+                    *l = product(out, inverse);
                 }
                 // What the block leaves.
                 for (c, out) in out.iter_mut().enumerate() {
@@ -235,24 +205,25 @@ impl<'a> Apart<'a> {
         for side in rows_mut(self.sides, width) {
             ldlt::forward_each::<f32, 1>(self.border, 0, ldlt::one_each_mut(side));
             for (j, side) in side.iter_mut().enumerate() {
-                *side = lanes::zip(side, &at(self.border, packed_len(j) + j), |side, inverse| side * inverse);
+                *side = product(side, &at(self.border, packed_len(j) + j));
             }
         }
     }
 
     /// A candidate's coefficients for a value.
     #[inline(always)]
-    fn solve(&mut self, terms: &Terms, value: usize, fit: usize) {
-        let (own, fixed, len) = (self.own, terms.fixed(), self.block_len(terms));
-        let (end, which) = (at(&terms.ends, fit), value * self.fits + fit);
+    fn solve(&mut self, batch: &Batch<'_>, value: usize, fit: usize) {
+        let (terms, slices) = (&batch.terms, batch.terms.slices);
+        let (own, fixed, len) = (self.own, terms.fixed(), self.block_len(batch));
+        let (end, which) = (at(&terms.ends, fit), value * terms.ends.len() + fit);
         let Some((shared, solved)) = self.solved.split_at_mut_checked(end) else { return };
         copy(shared, row_at(self.sides, self.width, value));
         ldlt::backward_each(self.border, shared);
         let trend = row_at_mut(self.trends, fixed, which);
         trend.iter_mut().for_each(|sum| *sum = NONE);
-        let each = self.slices * terms.columns();
+        let each = slices * terms.columns();
         let coefficients = row_at_mut(self.coefficients, each, which);
-        for slice in 0..self.slices {
+        for slice in 0..slices {
             let (triangle, lines) = halves(row_at(self.blocks, len, slice), packed_len(own));
             let solved = first_mut(solved, own);
             copy(solved, row_at(lines, own, self.width + value));
@@ -274,11 +245,11 @@ impl<'a> Apart<'a> {
                 *sum = plus(sum, own);
             }
         }
-        let inverse = [1.0 / self.slices as f32; LANES];
+        let inverse = [1.0 / slices as f32; LANES];
         trend.iter_mut().for_each(|sum| *sum = lanes::plus_product(NONE, *sum, inverse));
-        for slice in 0..self.slices {
+        for slice in 0..slices {
             for (out, mean) in row_at_mut(coefficients, terms.columns(), slice).iter_mut().zip(&*trend) {
-                *out = lanes::zip(out, mean, |own, mean| own - mean);
+                *out = minus(out, mean);
             }
         }
         trend.iter_mut().zip(&*shared).for_each(|(trend, shared)| *trend = plus(trend, shared));
@@ -286,10 +257,11 @@ impl<'a> Apart<'a> {
 
     /// Corrects a block by the fit to the other pixels; see `Fits::leave_block`.
     #[inline(always)]
-    fn apply(&mut self, terms: &Terms, batch: &Batch<'_>, block: usize, fits: Range<usize>, corrections: &mut [Four]) {
-        let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(terms));
+    fn apply(&mut self, batch: &Batch<'_>, block: usize, fits: Range<usize>, corrections: &mut [Four]) {
+        let (terms, values, count) = (&batch.terms, batch.values, batch.terms.ends.len());
+        let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(batch));
         let places = row_at(batch.places, fixed, block);
-        batch.put_columns(terms, block, self.columns);
+        batch.put_columns(block, self.columns, |_| ());
         let (Some(slices), Some(inside)) = (batch.slices.get(block), batch.inside.get(block)) else { return };
         for (line, slices) in slices.iter().enumerate() {
             let slices = slices.map(|slice| slice as usize);
@@ -310,10 +282,10 @@ impl<'a> Apart<'a> {
                     first(row(self.border, j.saturating_sub(own)), of_border.len()),
                 );
                 if j < own {
-                    let scaled = lanes::zip(out, &at(self.gathered, start + j), |z, inverse| z * inverse);
+                    let scaled = product(out, &at(self.gathered, start + j));
                     leverage = lanes::plus_product(leverage, scaled, *out);
                     for (unit, share) in shares.iter_mut().enumerate().take(fixed) {
-                        let unit = packed_len(own) + (width + self.values + unit) * own + j;
+                        let unit = packed_len(own) + (width + values + unit) * own + j;
                         *share = lanes::plus_product(*share, at(self.gathered, unit), *out);
                     }
                 }
@@ -323,10 +295,10 @@ impl<'a> Apart<'a> {
             for fit in fits.clone() {
                 let end = at(&terms.ends, fit);
                 for (b, z) in of_border.iter().enumerate().take(end).skip(begin) {
-                    let scaled = lanes::zip(z, &at(self.border, packed_len(b) + b), |z, inverse| z * inverse);
+                    let scaled = product(z, &at(self.border, packed_len(b) + b));
                     leverage = lanes::plus_product(leverage, scaled, *z);
                     for (unit, share) in shares.iter_mut().enumerate().take(fixed) {
-                        let entry = at(row_at(self.sides, width, self.values + unit), b);
+                        let entry = at(row_at(self.sides, width, values + unit), b);
                         *share = lanes::plus_product(*share, entry, *z);
                     }
                 }
@@ -335,9 +307,9 @@ impl<'a> Apart<'a> {
                 for (place, share) in places.iter().zip(&shares) {
                     reach = lanes::minus_product(reach, place[line], *share);
                 }
-                for value in 0..self.values {
-                    let which = value * self.fits + fit;
-                    let all = from(self.coefficients, which * self.slices * terms.columns());
+                for value in 0..values {
+                    let which = value * count + fit;
+                    let all = from(self.coefficients, which * terms.slices * terms.columns());
                     let coefficients = first_mut(self.gathered, end);
                     gather(coefficients, &slices.map(|slice| row_at(all, terms.columns(), slice)));
                     let mut fitted = NONE;
@@ -349,14 +321,14 @@ impl<'a> Apart<'a> {
                     for (place, coefficient) in places.iter().zip(row_at(self.trends, fixed, which)) {
                         trend = lanes::plus_product(trend, place[line], *coefficient);
                     }
-                    let mean = at(row_at(batch.means, self.values, block), value)[line];
+                    let mean = at(row_at(batch.means, values, block), value)[line];
                     let mut residual = NONE;
                     for l in 0..LANES {
                         residual[l] = mean[l] - fitted[l] - trend[l];
                     }
                     // A pixel that no fit is made to is corrected by the fit to all.
                     let residual = if batch.leaves_out { only(&inside[line], &residual) } else { residual };
-                    let corrections = row_at_mut(corrections, self.fits, block * self.values + value);
+                    let corrections = row_at_mut(corrections, count, block * values + value);
                     let Some(out) = corrections.get_mut(fit) else { return };
                     for l in 0..LANES {
                         let left = Real::max(1.0 - leverage[l], SINGULAR);

@@ -5,7 +5,7 @@ use super::super::result::{mean_divisor, saturate, standard_error};
 use super::call::{Call, Layout};
 use super::groups::{Groups, Place};
 use super::pixels::Window;
-use super::products::{Eight, NONE};
+use super::products::{Eight, NONE, product};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
@@ -98,15 +98,15 @@ impl Layout<'_> {
 impl Call<'_> {
     /// Adds the groups' corrections to the sums of their pixels, in the order of the windows.
     #[inline(always)]
-    pub(super) fn add(&self, first: usize, groups: &Groups<'_>, band: &mut Band<'_>) {
+    pub(super) fn add(&self, groups: &Groups<'_>, band: &mut Band<'_>) {
         let channels = self.config.channels;
         let len = sums_len(channels);
         let [rows, width] = [band.rows, self.eights() * LANES].map(|extent| extent as u32);
         let [across, down, _] = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
         let all = self.fits_without_edges();
-        for group in groups.in_order(self).filter(|group| all || group.has_edges) {
-            let Some(([gain, has_error], errors)) = groups.told(self, &group).split_first_chunk() else { continue };
-            let window = self.window(first + group.window);
+        for group in (0..groups.count).map(|index| groups.numbered(index)).filter(|group| all || group.has_edges) {
+            let Some(([gain, has_error], errors)) = groups.told(&group).split_first_chunk() else { continue };
+            let window = self.window(group.window);
             let (top, left) = (window.y % band.rows.max(1), window.x - self.windows.given.x);
             let members = groups.members(&group);
             let corrections = from(groups.corrections, group.start * channels);
@@ -131,8 +131,8 @@ impl Call<'_> {
                 }
                 let mut sums = [NONE; sums_len(Config::MAX_CHANNELS)];
                 sums[0] = near;
-                sums[1] = lanes::zip(&near, &[*has_error; LANES], |near, has_error| near * has_error);
-                sums[2] = lanes::zip(&near, &[*gain; LANES], |near, gain| near * gain);
+                sums[1] = product(&near, &[*has_error; LANES]);
+                sums[2] = product(&near, &[*gain; LANES]);
                 let (_, each) = halves_mut(&mut sums, COMMON);
                 for (each, (channel, &error)) in each.as_chunks_mut().0.iter_mut().zip(errors.iter().enumerate()) {
                     let mut both = [every(channels, from(corrections, begin * channels + channel)), [error; LANES]];

@@ -2,9 +2,10 @@
 
 use super::super::config::Config;
 use super::super::ridge;
-use super::products::{Four, times};
-use crate::basis::{Basis, MAX_ORDER, Shape};
-use crate::lanes;
+use super::call::Layout;
+use super::products::{Eight, Four, times};
+use crate::basis::{Basis, MAX_ORDER};
+use crate::lanes::{self, LANES};
 use crate::matrix::{at, halves_mut};
 use crate::rows::{part, rows_mut};
 use heapless::Vec;
@@ -56,17 +57,18 @@ pub(super) struct Terms {
 }
 
 impl Terms {
-    /// For a fit to `samples` samples of pixels that differ along `axes` axes. With `all`, one candidate: every column.
+    /// For fits to so many pixels of a call; perhaps with an edge.
     #[inline]
-    pub(super) fn new(config: &Config, shape: &Shape, axes: usize, samples: usize, all: bool) -> Self {
-        let functions = config.controls + shape.columns();
-        let fixed = 1 + axes;
+    pub(super) fn new(layout: &Layout<'_>, pixels: usize, has_edges: bool) -> Self {
+        let (config, shape, axes) = (layout.config, &layout.shape, layout.windows.axes());
+        let (functions, fixed) = (config.controls + shape.columns(), 1 + axes);
         let (slices, copies) = shape.slices_apart();
-        let moving = (config.controls, 0);
-        let mut terms = Self { axes, functions, moving, slices, copies, ..Self::default() };
-        if functions + slices == 0 {
-            return terms;
+        if layout.is_known_alone() || functions + slices == 0 {
+            return Self { axes, has_edges, ..Self::default() };
         }
+        let samples = pixels.saturating_mul(layout.n);
+        let moving = (config.controls, 0);
+        let mut terms = Self { axes, functions, moving, slices, copies, has_edges, ..Self::default() };
         // As many degrees as leave two samples to each column.
         for degree in 1..=MOVING_DEGREE.min(config.order.saturating_sub(1)).max(1) {
             let moving = shape.up_to_degree(degree);
@@ -83,7 +85,7 @@ impl Terms {
                 let _ = (terms.ends.push(columns), terms.own.push(own));
             }
         };
-        if !all {
+        if !layout.is_single_fit() {
             let own = usize::from(slices > 0);
             for degree in 1..=config.order {
                 end(fixed + config.controls + shape.up_to_degree(degree), own);
@@ -92,16 +94,6 @@ impl Terms {
         }
         end(last, all_own);
         terms
-    }
-
-    /// The constant and the axes alone: no candidates.
-    pub(super) fn without_fits(axes: usize) -> Self {
-        Self { axes, ..Self::default() }
-    }
-
-    /// The same, and perhaps an edge as the last candidate.
-    pub(super) fn with_edges(self, has_edges: bool) -> Self {
-        Self { has_edges, ..self }
     }
 
     pub(super) fn candidates(&self) -> usize {
@@ -173,6 +165,20 @@ impl Terms {
         for (penalty, &function) in products.iter_mut().zip(moving.iter().cycle()) {
             *penalty = MOVING_PENALTY * function;
         }
+    }
+
+    /// What is added to a column's sum of squares, `square`, for its penalty. What a control function is measured in is
+    /// its maker's choice.
+    #[inline(always)]
+    pub(super) fn ridge(&self, column: usize, penalty: f32, scale: &Eight, square: &Eight, count: &Eight) -> Eight {
+        let mut ridge = scale.map(|scale| scale * penalty);
+        if (self.fixed()..self.fixed() + self.moving.0).contains(&column) {
+            let divisor = lanes::divisor(count);
+            for l in 0..LANES {
+                ridge[l] *= square[l] / divisor[l];
+            }
+        }
+        ridge
     }
 
     /// The penalty of a slice's own column, by those of the others and that of a function of degree 1.
