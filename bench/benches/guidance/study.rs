@@ -113,7 +113,8 @@ impl Method {
             let image = Image { stride, ..Image::new(side, side) };
             let mut workspace = vec![0.0; image_workspace_len(&config, &image, n).context("no workspace")?];
             let start = Clock::now();
-            estimate_image(&config, &image, samples, &mut workspace, |_, estimate| push(estimate)).context("shared")?;
+            let mut put = |_, estimate| push(estimate);
+            estimate_image(&config, &image, samples, &mut workspace, &mut put).context("shared")?;
             start.ns()
         };
         Ok((out, ns))

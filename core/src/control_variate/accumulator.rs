@@ -61,7 +61,7 @@ impl<R: Real> Accumulator<R> {
     /// # Errors
     /// [`Error::Unsupported`] for what needs all samples at once, which are
     /// [`Estimator::LeaveOneOut`](super::Estimator::LeaveOneOut), [`Solver::Dual`](super::Solver::Dual), and
-    /// [`Ridge::Auto`](super::Ridge::Auto) of least squares; for [`Solver::SquareRoot`](super::Solver::SquareRoot) of
+    /// [`Ridge::Auto`] of least squares; for [`Solver::SquareRoot`](super::Solver::SquareRoot) of
     /// all else; and whatever [`Config::terms`] finds.
     pub fn new(config: &Config) -> Result<Self, Error> {
         let shape = config.checked_shape()?;

@@ -147,7 +147,7 @@ pub(crate) fn nested<R: Real>(
     let coefficients = arena.take(FITS * each)?;
     let train = arena.take(groups.layout.len())?;
     let (mut sums, mut press) = (PerChannel::default(), PerChannel::default());
-    let (mut count, others) = (R::ZERO, R::from_usize(groups.filled() - 1));
+    let (mut count, others) = (R::ZERO, R::from_usize(groups.filled().saturating_sub(1)));
     for (fold, held_out) in groups.each() {
         count += held_out.count();
         let mut errors = Errors::default();
