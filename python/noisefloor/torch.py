@@ -212,8 +212,8 @@ class ImportanceBatchSampler(Sampler):
         importance = self._gather(importance).reshape(len(index), techniques)
         known = ~(importance < 0).any(1) if skip else slice(None)
         index, importance = index[known].numpy(), importance[known].numpy()
-        # Before any table is changed.
-        _arrays.check_positive("importance", importance if techniques > 1 else importance[:, 0])
+        if techniques > 1:  # one table refuses by itself; of several none may have been changed before
+            _arrays.check_positive("importance", importance)
         for j, table in enumerate(self._tables):
             table.update(index, importance[:, j], 0.0 if first else self._momentum)
 
@@ -222,8 +222,12 @@ class ImportanceBatchSampler(Sampler):
         if self._processes == 1:
             return own.cpu()
         own = own.contiguous()
+        backend = torch.distributed.get_backend(self._group)
         # Each reaches the others from its own kind of memory only.
-        own = {"gloo": own.cpu, "nccl": own.cuda}.get(torch.distributed.get_backend(self._group), lambda: own)()
+        if backend == "gloo":
+            own = own.cpu()
+        elif backend == "nccl":
+            own = own.cuda()
         parts = [torch.empty_like(own) for _ in range(self._processes)]
         torch.distributed.all_gather(parts, own, group=self._group)
         return torch.stack(parts, 1).flatten(0, 1).cpu()

@@ -113,7 +113,7 @@ def _jit_sampler():
             super().seed(seed, wavefront_size)
             self._clear()
             wavefront_size, (width, height) = self.wavefront_size(), self.size
-            if wavefront_size == 1 != width * height:  # how Mitsuba frees a sampler's memory
+            if wavefront_size == 1 and width * height != 1:  # how Mitsuba frees a sampler's memory
                 return
             # Not what set_samples_per_wavefront() said: integrators' calls do not come as far as here.
             self.per_wave, rest = divmod(wavefront_size, max(width * height, 1))
