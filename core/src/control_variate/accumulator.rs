@@ -11,7 +11,7 @@ use super::plan::{self, Method};
 use super::result::{Outcome, Summary};
 use super::ridge;
 use super::samples::{Reader, Samples, Subset};
-use super::sums::{Change, Form, Layout, Sums};
+use super::sums::{Change, Form, Layout};
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
 use crate::error::Error;
@@ -269,8 +269,17 @@ impl<R: Real> Accumulator<R> {
         let outcome = match self.method {
             Method::Robust | Method::KFold => self.cross_fit(sums, &summary, arena)?,
             Method::Incremental | Method::SquareRoot => self.one_by_one(sums, &summary, arena)?,
-            Method::Descent => self.descend(&self.layout.group(sums, 0)?, &summary, arena)?,
-            Method::LeastSquares => self.least_squares(&self.layout.group(sums, 0)?, arena)?,
+            Method::LeastSquares => {
+                let (group, penalties) = (self.layout.group(sums, 0)?, arena.take(self.layout.columns)?);
+                ridge::penalties(&self.config, &self.basis()?, |j| group.mean_square(j), penalties);
+                let strength = R::from_f64(ridge::least_squares::<R>(self.config.ridge));
+                normal::least_squares(&group, Penalty { strength, relative: penalties }, arena)?
+            }
+            Method::Descent => {
+                let centred = normal::Centred::new(&self.layout.group(sums, 0)?, arena)?;
+                let coefficients = arena.zeros(self.layout.coefficients())?;
+                descent::descend(&centred, &self.config, &self.basis()?, coefficients, summary.variance, arena)?
+            }
             // A stream has no leave-one-out errors.
             Method::Plain | Method::LeaveOneOut => Outcome::default(),
         };
@@ -318,19 +327,6 @@ impl<R: Real> Accumulator<R> {
         } else {
             cross_fit::pooled(&groups, summary.mean, variance, arena)
         }
-    }
-
-    fn least_squares(&self, group: &Sums<&[R]>, arena: &mut Arena<'_, R>) -> Result<Outcome<R>, Error> {
-        let penalties = arena.take(self.layout.columns)?;
-        ridge::penalties(&self.config, &self.basis()?, |j| group.mean_square(j), penalties);
-        let strength = R::from_f64(ridge::least_squares::<R>(self.config.ridge));
-        normal::least_squares(group, Penalty { strength, relative: penalties }, arena)
-    }
-
-    fn descend(&self, group: &Sums<&[R]>, summary: &Summary<R>, arena: &mut Arena<'_, R>) -> Result<Outcome<R>, Error> {
-        let centred = normal::Centred::new(group, arena)?;
-        let coefficients = arena.zeros(self.layout.coefficients())?;
-        descent::descend(&centred, &self.config, &self.basis()?, coefficients, summary.variance, arena)
     }
 
     /// Moves the units' zero of a narrow type to the mean so far, each time that the samples, of which there were
@@ -390,17 +386,16 @@ impl<R: Real> Accumulator<R> {
     fn raise_exponents(&mut self, exponents: &[i32; Config::MAX_CHANNELS], sums: &mut [R]) {
         let mut change = Change::none();
         let mut any = false;
-        let fresh = self.samples == 0;
         for ((unit, &exponent), factor) in self.units.iter_mut().zip(exponents).zip(change.factors.iter_mut()) {
             let exponent = exponent.clamp(-126, 126);
-            if exponent > unit.exponent || (fresh && R::NARROW) {
+            if self.samples == 0 && R::NARROW {
                 // Of nothing yet there is nothing to rescale.
-                if !fresh {
-                    *factor = R::ONE.scale((unit.exponent - exponent).max(-149));
-                    unit.offset *= *factor;
-                    any = true;
-                }
                 unit.exponent = exponent;
+            } else if exponent > unit.exponent {
+                *factor = R::ONE.scale((unit.exponent - exponent).max(-149));
+                unit.offset *= *factor;
+                unit.exponent = exponent;
+                any = true;
             }
         }
         if any {

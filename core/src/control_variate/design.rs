@@ -122,7 +122,7 @@ impl<'a, R: Real> Design<'a, R> {
         clear_unused(&mut values, n);
         if centre {
             self::centre(&mut panels, n, column_means);
-            clear_constant(&mut panels, n, column_means, reader.control_integrals());
+            clear_constant(&mut panels, n, column_means, reader.samples.control_integrals);
             // Of a narrow type twice: about an outlier, the first sample may be one, the first mean is rounded to it.
             for _ in 0..1 + usize::from(R::NARROW) {
                 let mut means = PerChannel::default();

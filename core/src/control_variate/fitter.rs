@@ -87,10 +87,11 @@ pub(crate) fn fit<'a, R: Real>(
             System::Dual(dual) => dual.fit(design, penalty, leave_one_out, kept, arena.scratch())?,
         };
     }
+    let plain = plain_press(design);
     let mixture = if is_mixed {
-        mix(design, plan.method, &fits, strengths.len())
+        mix(R::from_usize(design.n), plain, plan.method, &fits, strengths.len())
     } else {
-        let best = if strengths.len() > 1 { best_of(&fits, &plain_press(design)) } else { 0 };
+        let best = if strengths.len() > 1 { best_of(&fits, &plain) } else { 0 };
         let weights = array::from_fn(|fit| PerChannel::all(if fit == best { R::ONE } else { R::ZERO }));
         let corrections = fits.map(|fit| if is_least_squares { fit.in_sample } else { fit.leave_one_out });
         Mixture { plain_weight: PerChannel::default(), weights, corrections }
@@ -106,15 +107,15 @@ pub(crate) fn fit<'a, R: Real>(
     Ok(Blend { fits, mixture, is_told })
 }
 
-/// The plain mean and the first `used` fits, weighed. Fits that are to correct other samples are trusted less where
-/// their own are too even.
+/// The plain mean of `n` samples and the first `used` fits, weighed. Fits that are to correct other samples are trusted
+/// less where their own are too even.
 fn mix<R: Real>(
-    design: &Design<'_, R>,
+    n: R,
+    plain: PerChannel<R>,
     method: Method,
     fits: &[Fit<R>; MAX_FITS],
     used: usize,
 ) -> Mixture<R, MAX_FITS> {
-    let (n, plain) = (R::from_usize(design.n), plain_press(design));
     let variance = plain * result::press_factor(n);
     let [mut corrections, mut discounts] = [[PerChannel::default(); MAX_FITS]; 2];
     let mut parts = [R::ONE; MAX_FITS];
@@ -137,14 +138,13 @@ fn mix<R: Real>(
 
 /// Of fits the one with the smallest leave-one-out error summed over the channels, each relative to its plain mean's.
 fn best_of<R: Real>(fits: &[Fit<R>; MAX_FITS], plain: &PerChannel<R>) -> usize {
-    let error = |fit: &Fit<R>| {
-        // Of a channel that is constant nothing counts.
-        let ratio = |press: R, plain: R| press.to_f64() / if plain > R::ZERO { plain.to_f64() } else { f64::INFINITY };
-        fit.press.iter().zip(plain.iter()).map(|(&press, &plain)| ratio(press, plain)).sum::<f64>()
-    };
     let mut best = (0, 0.0);
     for (index, fit) in fits.iter().enumerate() {
-        let error = error(fit);
+        let mut error = 0.0;
+        for (press, &plain) in fit.press.iter().zip(plain.iter()) {
+            // Of a channel that is constant nothing counts.
+            error += press.to_f64() / if plain > R::ZERO { plain.to_f64() } else { f64::INFINITY };
+        }
         if index == 0 || error < best.1 {
             best = (index, error);
         }

@@ -67,7 +67,7 @@ impl Subset {
 /// Samples whose lengths were checked, read one at a time.
 #[derive(Clone, Copy)]
 pub(crate) struct Reader<'a> {
-    samples: Samples<'a>,
+    pub(crate) samples: Samples<'a>,
     n: usize,
     dims: usize,
     stride: usize,
@@ -131,11 +131,6 @@ impl<'a> Reader<'a> {
             Subset::Fold(fold) => fold.len(),
             Subset::Complement(fold) => self.n - fold.len(),
         }
-    }
-
-    /// The exact integral of each control function.
-    pub(crate) fn control_integrals(&self) -> &'a [f32] {
-        self.samples.control_integrals
     }
 
     /// How many values of a sample are regressed.

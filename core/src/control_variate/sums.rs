@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::linalg::givens;
 use crate::matrix::{Panel, Triangle, copy, packed_len};
 use crate::real::Real;
-use crate::rows::{at, first_mut, row_at, row_at_mut};
+use crate::rows::{at, first, first_mut, from_mut, row_at, row_at_mut};
 use core::ops::{Deref, DerefMut};
 
 /// What is kept of the samples' rows.
@@ -151,23 +151,14 @@ impl<R: Real, S: Deref<Target = [R]>> Sums<S> {
         self.residual_totals(b) * inverse
     }
 
-    /// The sums of (f - a - b'p)^2 over the samples: theta'G theta - 2 theta'r + s with theta = (a, b); of a alone
-    /// without any b.
+    /// The sums of (f - a - b'p)^2 over the samples, with theta = (a, b); of a alone without any b.
     pub(crate) fn residual_squares(&self, a: PerChannel<R>, b: &[R]) -> PerChannel<R> {
         let (squares, columns) = (self.squares(), self.layout().columns);
         PerChannel::of(self.channels(), |channel| {
             let b = row_at(b, columns, channel);
-            let theta = |j: usize| if j == 0 { a[channel] } else { at(b, j - 1) };
-            let mut total = squares[channel];
-            for (j, row) in self.gram.rows().enumerate().take(b.len() + 1) {
-                let mut product = R::ZERO;
-                for (k, &value) in row.iter().enumerate() {
-                    product += theta(k) * if k == j { value } else { value + value };
-                }
-                let rhs = self.rhs.at(j, channel);
-                total += theta(j) * (product - rhs - rhs);
-            }
-            not_below_zero(total)
+            let mut theta = [a[channel]; MAX_TERMS];
+            copy(from_mut(&mut theta, 1), b);
+            residual_square(squares[channel], &self.gram, self.rhs.column(channel), first(&theta, 1 + b.len()))
         })
     }
 }
@@ -265,6 +256,20 @@ pub(crate) fn add<R: Real>(into: &mut [R], other: &[R]) {
     for (into, &other) in into.iter_mut().zip(other) {
         *into += other;
     }
+}
+
+/// The sum of (f - b'p)^2, from that of f^2 and the products of p with p and f: f'f - 2 b'c + b'G b.
+pub(crate) fn residual_square<'a, R: Real>(
+    square: R,
+    gram: &Triangle<impl Deref<Target = [R]>>,
+    rhs: impl Iterator<Item = &'a R>,
+    b: &[R],
+) -> R {
+    let mut total = square;
+    for (j, (&value, &rhs)) in b.iter().zip(rhs).enumerate() {
+        total += value * (gram.half_product(j, b) - rhs - rhs);
+    }
+    not_below_zero(total)
 }
 
 /// The sums of squares about the means, from those about zero.

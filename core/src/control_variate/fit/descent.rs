@@ -121,14 +121,20 @@ pub(crate) fn descend<R: Real>(
     let columns = objective.means().len();
     let (gradient, first, second) = (arena.take(columns)?, arena.take(columns)?, arena.take(columns)?);
     let (scales, units) = (arena.take(columns)?, arena.take(columns)?);
-    control_units(objective, config.controls, units);
+    let n = R::from_usize(objective.count());
+    // One for the basis, and one over a control function's size, whose unit is its maker's; zero for one that does not
+    // move.
+    units.fill(R::ONE);
+    for (column, unit) in units.iter_mut().enumerate().take(config.controls) {
+        let square = objective.column_square(column);
+        *unit = if square > R::ZERO { R::ONE / (square / n).sqrt().or_one() } else { R::ZERO };
+    }
     copy(scales, units);
     basis.scales(from_mut(scales, config.controls));
     let curvature = match config.optimizer {
         Optimizer::Adam => R::ONE,
         Optimizer::Momentum | Optimizer::Plain => largest_curvature(objective, scales, first, gradient, second),
     };
-    let n = R::from_usize(objective.count());
     let variance_factor = variance_factor(objective, units);
     let mut outcome = Outcome { correction: PerChannel::default(), variance: plain };
     let squares = objective.squares();
@@ -168,16 +174,6 @@ pub(crate) fn descend<R: Real>(
         }
     }
     Ok(outcome)
-}
-
-/// What each coefficient is measured in: one for the basis, and one over a control function's size, whose unit is its
-/// maker's; zero for one that does not move.
-fn control_units<R: Real>(objective: &impl Objective<R>, controls: usize, units: &mut [R]) {
-    let n = R::from_usize(objective.count());
-    for (column, unit) in units.iter_mut().enumerate() {
-        let square = if column < controls { objective.column_square(column) } else { n };
-        *unit = if square > R::ZERO { R::ONE / (square / n).sqrt().or_one() } else { R::ZERO };
-    }
 }
 
 /// What a sum of squared residuals of a descent is multiplied by to be a variance; None if no residual is left over to

@@ -4,7 +4,7 @@ use super::super::config::Config;
 use super::super::design::Design;
 use super::super::per_channel::PerChannel;
 use super::super::result::{self, Outcome};
-use super::super::sums::{Layout, Sums, not_below_zero, spread};
+use super::super::sums::{Layout, Sums, not_below_zero, residual_square, spread};
 use super::super::trust::Centre;
 use super::descent::Objective;
 use super::{Fit, Penalty, SMALLEST_GAP};
@@ -326,13 +326,8 @@ impl<R: Real> Objective<R> for Centred<'_, R> {
         self.squares
     }
 
-    /// f'f - 2 b'c + b'G b
     fn residual_square(&self, channel: usize, b: &[R]) -> R {
-        let mut total = self.squares[channel];
-        for (j, (&value, &rhs)) in b.iter().zip(self.normal.rhs.row(channel)).enumerate() {
-            total += value * (self.normal.gram.half_product(j, b) - rhs - rhs);
-        }
-        not_below_zero(total)
+        residual_square(self.squares[channel], &self.normal.gram, self.normal.rhs.row(channel).iter(), b)
     }
 
     fn column_square(&self, column: usize) -> R {
