@@ -226,7 +226,7 @@ impl<'a> Batch<'a> {
         let axes = call.windows.used_axes();
         let scales = axes.map(|axis| (SQRT_3 / call.windows.extent[axis % MAX_AXES].max(1) as f64) as f32);
         let [width, height] = [call.windows.given.width, call.windows.given.height].map(|extent| extent as u32);
-        let corners = self.lanes.map(|group| call.corner(group.window) as u32);
+        let corners = self.lanes.map(|group| call.pixel(call.window(group.window), Place::default(), 0) as u32);
         let members = self.lanes.map(|group| groups.members(&group));
         let mut other = None;
         for block in 0..self.inside.len() {

@@ -60,7 +60,7 @@ impl Call<'_> {
     }
 
     /// Fits to all groups: first to all of their pixels, then, where some are too bright, to the others.
-    pub(super) fn fit<P: Processor>(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+    fn fit<P: Processor>(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
         let later = if self.is_single_fit() { 0 } else { self.turns() };
         let all = self.fits_without_edges();
         for (pass, has_edges) in (0..=later).flat_map(|pass| [(pass, false), (pass, true)]) {
