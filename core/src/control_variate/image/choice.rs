@@ -197,7 +197,7 @@ impl<'a> Spreads<'a> {
                 let trends = rows(row_at(trends, choices.count * fixed, channel), fixed);
                 for ((estimate, sum), trend) in estimates.iter().zip(sums).zip(trends) {
                     let trend = combine([NONE; AT_ONCE], places, trend);
-                    let rest = zip_four(estimate, &trend, |estimate, trend| minus(estimate, trend));
+                    let rest = zip_four(estimate, &trend, minus);
                     let rest = zip_four(inside, &rest, only);
                     for (row, rest) in rest.iter().enumerate() {
                         let sum = &mut sum[batch.colour((block, row))];
