@@ -284,7 +284,7 @@ impl<'a> Fits<'a> {
         let (width, fixed) = (terms.columns(), terms.fixed());
         let places = row_at(batch.places, fixed, block);
         let inside = at(batch.inside, block);
-        batch.put_columns(block, self.solved, |_| ());
+        batch.put_columns(block, self.solved);
         ldlt::forward_each(self.system.part(0).gram, 0, self.solved);
         let mut leverage = [NONE; AT_ONCE];
         // A^-1 x of the fixed columns.
