@@ -186,9 +186,9 @@ impl Call<'_> {
                 *gain += ratio[lane % LANES] / channels as f32;
                 let spread = black_box(ratio[lane % LANES] * plain[lane % LANES]) / freedom[lane % LANES];
                 *error = if !by_groups {
-                    ratio[lane % LANES].sqrt()
+                    Real::sqrt(ratio[lane % LANES])
                 } else if is_known {
-                    spread.sqrt() * units.powers[lane % LANES]
+                    Real::sqrt(spread) * units.powers[lane % LANES]
                 } else {
                     0.0
                 };
