@@ -205,16 +205,15 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// The columns of a block's pixels, `changed` before products are made.
+    /// The columns of a block's pixels.
     #[inline(always)]
-    pub(super) fn put_columns(&self, block: usize, columns: &mut [Four], changed: impl Fn(&mut Four)) {
+    pub(super) fn put_columns(&self, block: usize, columns: &mut [Four]) {
         let terms = &self.terms;
         let places = row_at(self.places, terms.fixed(), block);
-        let (fixed, rest) = halves_mut(columns, terms.fixed());
-        let (functions, products) = halves_mut(rest, terms.functions);
-        copy(fixed, places);
-        copy(functions, row_at(self.functions, terms.functions, block));
-        fixed.iter_mut().chain(&mut *functions).for_each(changed);
+        let functions = row_at(self.functions, terms.functions, block);
+        copy(columns, places);
+        let (out, products) = halves_mut(columns, terms.fixed() + terms.functions);
+        copy(from_mut(out, terms.fixed()), functions);
         terms.multiply(places, functions, products);
     }
 
@@ -226,7 +225,7 @@ impl<'a> Batch<'a> {
         let axes = call.windows.used_axes();
         let scales = axes.map(|axis| (SQRT_3 / call.windows.extent[axis % MAX_AXES].max(1) as f64) as f32);
         let [width, height] = [call.windows.given.width, call.windows.given.height].map(|extent| extent as u32);
-        let corners = self.lanes.map(|group| call.corner(group.window) as u32);
+        let corners = self.lanes.map(|group| call.pixel(call.window(group.window), Place::default(), 0) as u32);
         let members = self.lanes.map(|group| groups.members(&group));
         let mut other = None;
         for block in 0..self.inside.len() {
@@ -426,17 +425,22 @@ impl<'a> Batch<'a> {
     /// The columns and values of a block's pixels that fits are made to.
     #[inline(always)]
     fn put_means(&self, block: usize, pixels: &mut Rows<'_>) {
-        let (inside, root) = (at(self.inside, block), Real::sqrt(self.call.n as f32));
-        let changes = self.leaves_out || self.call.n > 1;
-        let change = |four: &mut Four| {
-            if changes {
+        let (terms, n) = (&self.terms, self.call.n);
+        let places = row_at(self.places, terms.fixed(), block);
+        let (fixed, rest) = halves_mut(pixels.columns, terms.fixed());
+        let (functions, products) = halves_mut(rest, terms.functions);
+        copy(fixed, places);
+        copy(functions, row_at(self.functions, terms.functions, block));
+        copy(pixels.values, row_at(self.means, self.values, block));
+        let inside = at(self.inside, block);
+        if self.leaves_out || n > 1 {
+            let root = Real::sqrt(n as f32);
+            for four in fixed.iter_mut().chain(&mut *functions).chain(pixels.values.iter_mut()) {
                 *four = zip_four(&inside, four, |inside, value| only(inside, &value.map(|value| value * root)));
                 lanes::keep_together();
             }
-        };
-        self.put_columns(block, pixels.columns, change);
-        copy(pixels.values, row_at(self.means, self.values, block));
-        pixels.values.iter_mut().for_each(change);
+        }
+        terms.multiply(places, functions, products);
     }
 }
 

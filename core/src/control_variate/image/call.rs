@@ -61,7 +61,7 @@ impl Layout<'_> {
     }
 
     /// Whether halves of the pixels choose for each other.
-    pub(super) fn has_halves(&self) -> bool {
+    fn has_halves(&self) -> bool {
         self.config.estimator == Estimator::KFold && !self.is_single_fit()
     }
 

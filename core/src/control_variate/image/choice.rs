@@ -13,7 +13,7 @@ use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
-use crate::matrix::{packed_len, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{at, packed_len, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 use core::f32::consts::LOG2_E;
@@ -64,7 +64,7 @@ impl Choices {
 
     /// Which value of a sample a choice is of, and which fit it has: 0 for none.
     #[inline]
-    pub(super) fn value_and_fit(&self, channel: usize, choice: usize) -> (usize, usize) {
+    fn value_and_fit(&self, channel: usize, choice: usize) -> (usize, usize) {
         if choice <= self.fits { (channel, choice) } else { (self.channels + channel, choice - self.fits - 1) }
     }
 
@@ -90,7 +90,7 @@ impl Choices {
 /// How often is chosen: for all pixels, and for those of each colour; or, as the first two, for either half.
 const CHOSEN: usize = 1 + COLOURS;
 /// Lanes of each choice of [`Spreads`], with those that are needed to make them.
-const SPREADS: usize = 2 * CHOSEN + COLOURS + 1 + MAX_FIXED;
+const SPREADS: usize = 2 * COLOURS + 1 + MAX_FIXED;
 
 /// How far each choice is trusted: of each time that is chosen, channel and choice.
 pub(super) struct Shares<'a> {
@@ -114,7 +114,6 @@ impl<'a> Shares<'a> {
         row_at(self.all, self.choices.count, time * self.choices.channels + channel)
     }
 
-    /// The same, to be written.
     #[inline]
     fn of_mut(&mut self, time: usize, channel: usize) -> &mut [Eight] {
         row_at_mut(self.all, self.choices.count, time * self.choices.channels + channel)
@@ -126,10 +125,10 @@ impl<'a> Shares<'a> {
 /// The signal's own spread is common to all candidates, so that the difference is the error's, however the samples are
 /// correlated; what the trend takes away is almost only signal.
 pub(super) struct Spreads<'a> {
-    /// As all pixels, then as each colour counts them: of each channel and choice.
-    sums: &'a mut [Eight],
+    /// Of each channel and choice, of the pixels of each colour.
+    across: &'a mut [Four],
     /// The same of what a choice leaves of the samples about their pixels' means; see [`Fits::within`].
-    within: &'a mut [Eight],
+    within: &'a mut [Four],
     /// Pixels less the trend's coefficients, at least 0.
     pub(super) freedom: Eight,
     /// Pixels of the colours.
@@ -151,12 +150,10 @@ impl<'a> Spreads<'a> {
     ) -> Result<Self, Error> {
         let fixed = batch.terms.fixed();
         let all = choices.channels * choices.count;
-        let [sums, within] = [arena.take_lanes(CHOSEN * all)?, arena.take_lanes(CHOSEN * all)?];
+        let [across, within] = [arena.take_fours(all)?, arena.take_fours(all)?];
         let [squares, trends] = [arena.take_lanes(all)?, arena.take_lanes(all * fixed)?];
-        let of_colours = arena.take_fours(all)?;
-        for sum in [&mut *squares, trends, of_colours.as_flattened_mut()].into_iter().flatten() {
-            *sum = NONE;
-        }
+        let sums = [&mut *squares, trends, across.as_flattened_mut(), within.as_flattened_mut()];
+        sums.into_iter().flatten().for_each(|sum| *sum = NONE);
         let mut factor = [NONE; packed_len(MAX_FIXED)];
         let estimates = arena.take_fours(choices.count)?;
         for block in batch.blocks(taken) {
@@ -196,7 +193,7 @@ impl<'a> Spreads<'a> {
             let Some(inside) = batch.inside.get(block) else { continue };
             for channel in 0..choices.channels {
                 choices.estimate(batch, fits, (block, channel), estimates);
-                let sums = row_at_mut(of_colours, choices.count, channel);
+                let sums = row_at_mut(across, choices.count, channel);
                 let trends = rows(row_at(trends, choices.count * fixed, channel), fixed);
                 for ((estimate, sum), trend) in estimates.iter().zip(sums).zip(trends) {
                     let trend = combine([NONE; AT_ONCE], places, trend);
@@ -210,42 +207,40 @@ impl<'a> Spreads<'a> {
                 }
             }
         }
-        // What a colour's own pixels say of fits to the others is biased by them, and counts less.
-        let own = lanes::each(&freedom, |freedom| if freedom < ENOUGH { 1.0 } else { OWN });
-        let count = |out: &mut [Eight], index: usize, each: &Four| {
-            for time in 0..CHOSEN {
-                let mut each = *each;
-                if let Some(each) = time.checked_sub(1).and_then(|colour| each.get_mut(colour)) {
-                    *each = product(each, &own);
-                }
-                if let Some(out) = out.get_mut(time * all + index) {
-                    *out = total(&each);
-                }
-            }
-        };
-        for (index, (each, square)) in of_colours.iter().zip(squares).enumerate() {
-            let mut each = *each;
+        for (each, square) in across.iter_mut().zip(squares) {
             each.iter_mut().for_each(|sum| *sum = batch.joined(sum));
             // What is left of a signal that is its trend is rounding noise.
-            let (left, square) = (total(&each), batch.joined(square));
+            let (left, square) = (total(each), batch.joined(square));
             for l in 0..LANES {
                 let noise = square[l] * (f32::EPSILON * f32::EPSILON * 4096.0);
                 let counts = left[l] > noise && freedom[l] > 0.0;
-                for each in &mut each {
+                for each in each.iter_mut() {
                     each[l] = if counts { each[l] } else { 0.0 };
                 }
             }
-            count(sums, index, &each);
         }
-        for (channel, choice) in (0..choices.channels).flat_map(|c| (0..choices.count).map(move |choice| (c, choice))) {
-            let (value, fit) = choices.value_and_fit(channel, choice);
-            let mut each = [NONE; COLOURS];
-            for (colour, each) in each.iter_mut().enumerate().filter(|&(colour, _)| taken.has(colour)) {
-                *each = fits.within(value, colour, fit);
+        for (channel, within) in rows_mut(within, choices.count).enumerate() {
+            for (choice, each) in within.iter_mut().enumerate() {
+                let (value, fit) = choices.value_and_fit(channel, choice);
+                for (colour, each) in each.iter_mut().enumerate().filter(|&(colour, _)| taken.has(colour)) {
+                    *each = fits.within(value, colour, fit);
+                }
             }
-            count(within, channel * choices.count + choice, &each);
         }
-        Ok(Self { sums, within, freedom, pixels, has_several: batch.call.n > 1, choices })
+        Ok(Self { across, within, freedom, pixels, has_several: batch.call.n > 1, choices })
+    }
+
+    /// The sums of a choice, across pixels and within them: for 0 as all pixels count them, else as a colour does. What
+    /// its own pixels say of fits to the others is biased by them, and counts less.
+    #[inline]
+    fn sums(&self, channel: usize, choice: usize, by: usize) -> [Eight; 2] {
+        [&*self.across, &*self.within].map(|all| {
+            let mut each = at(row_at(all, self.choices.count, channel), choice);
+            if let Some(each) = by.checked_sub(1).and_then(|colour| each.get_mut(colour)) {
+                *each = lanes::zip(each, &self.freedom, |sum, freedom| sum * if freedom < ENOUGH { 1.0 } else { OWN });
+            }
+            total(&each)
+        })
     }
 
     /// Chooses for all pixels, and for those of each of so many colours, and keeps that from a time on.
@@ -260,39 +255,29 @@ impl<'a> Spreads<'a> {
     ) {
         // Stratified samples' means differ by less than their variance within pixels tells: it may only warn.
         let part = if is_stratified { 0.0 } else { WITHIN };
-        for by in 0..=colours {
-            let sharper = if by > 0 { SHARPER } else { 1.0 };
-            let freedom = lanes::each(&self.freedom, |freedom| freedom * if freedom < ENOUGH { 1.0 } else { sharper });
-            for channel in 0..self.choices.channels {
-                let row = by * self.choices.channels + channel;
-                let [sums, within] = [&*self.sums, &*self.within].map(|all| row_at(all, self.choices.count, row));
-                self.share([sums, within], (&freedom, part), present, shares.of_mut(time + by, channel));
-            }
+        for (by, channel) in (0..=colours).flat_map(|by| (0..self.choices.channels).map(move |channel| (by, channel))) {
+            self.share(channel, by, part, present, shares.of_mut(time + by, channel));
         }
     }
 
     /// Trust by spreads, of the plain mean first: [`Judge::weigh`](trust::Judge::weigh) in each lane. As `part` counts
     /// what samples within pixels say for a fit.
     #[inline(always)]
-    fn share(
-        &self,
-        [spreads, within]: [&[Eight]; 2],
-        (freedom, part): (&Eight, f32),
-        present: &Eight,
-        shares: &mut [Eight],
-    ) {
+    fn share(&self, channel: usize, by: usize, part: f32, present: &Eight, shares: &mut [Eight]) {
         let &Self { choices, pixels, has_several, .. } = self;
-        let ([plain, spreads @ ..], [noise, within @ ..], [mean, rest @ ..]) = (spreads, within, shares) else {
-            return;
-        };
+        let sharper = if by > 0 { SHARPER } else { 1.0 };
+        let freedom = lanes::each(&self.freedom, |freedom| freedom * if freedom < ENOUGH { 1.0 } else { sharper });
+        let Some((mean, rest)) = shares.split_first_mut() else { return };
+        let [plain, noise] = &self.sums(channel, 0, by);
         let [least, least_noise] = [plain, noise].map(no_less);
         let [inverse, inverse_noise] =
             [least, least_noise].map(|least| lanes::each(&lanes::divisor(&least), |least| 1.0 / least));
         let [most, most_noise] = [least, least_noise].map(|least| no_more(&least));
         let [power, power_within] =
-            [freedom, &pixels].map(|count| lanes::each(count, |count| count * -trust::SHARPNESS as f32));
+            [&freedom, &pixels].map(|count| lanes::each(count, |count| count * -trust::SHARPNESS as f32));
         let mut largest = NONE;
-        for ((share, spread), within) in rest.iter_mut().zip(spreads).zip(within) {
+        for (choice, share) in rest.iter_mut().enumerate() {
+            let [spread, within] = &self.sums(channel, 1 + choice, by);
             let over = |sum: &Eight, most: &Eight, inverse: &Eight| {
                 let told = lanes::zip(sum, most, Real::min);
                 lanes::zip(&told, inverse, |told, inverse| Real::max(told * inverse, 1e-30))
@@ -308,7 +293,7 @@ impl<'a> Spreads<'a> {
             largest = lanes::zip(&largest, share, |largest, share| if share > largest { share } else { largest });
         }
         let prior = Real::ln(trust::PRIOR as f32 * choices.counted() as f32) * LOG2_E;
-        *mean = lanes::zip(&largest, freedom, |largest, freedom| {
+        *mean = lanes::zip(&largest, &freedom, |largest, freedom| {
             let caution = largest - freedom * freedom * (LOG2_E / trust::CAUTION as f32);
             if caution > 0.0 { prior + caution } else { prior }
         });
@@ -338,16 +323,20 @@ impl<'a> Spreads<'a> {
 
     /// The plain mean's spread.
     pub(super) fn plain(&self, channel: usize) -> Eight {
-        self.sums.get(channel * self.choices.count).copied().unwrap_or(NONE)
+        let [plain, _] = self.sums(channel, 0, 0);
+        plain
     }
 
     /// A mixture's spread relative to the plain mean's, by the samples within pixels where `inside`.
     #[inline]
     pub(super) fn ratio(&self, channel: usize, shares: &[Eight], inside: bool) -> Eight {
-        let sums = row_at(if inside { &*self.within } else { &*self.sums }, self.choices.count, channel);
-        let plain = sums.first().copied().unwrap_or(NONE);
-        let mixed = sums.iter().zip(shares);
-        let mixed = mixed.fold(NONE, |mixed, (sum, share)| lanes::plus_product(mixed, *sum, *share));
+        let sum = |choice: usize| {
+            let [across, within] = self.sums(channel, choice, 0);
+            if inside { within } else { across }
+        };
+        let plain = sum(0);
+        let mixed = shares.iter().enumerate();
+        let mixed = mixed.fold(NONE, |mixed, (choice, share)| lanes::plus_product(mixed, sum(choice), *share));
         let least = no_less(&plain);
         let mixed = lanes::zip(&mixed, &no_more(&least), Real::min);
         // Behind a black box, or compilers divide a lane or two, and what else their vector holds.

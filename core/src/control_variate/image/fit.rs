@@ -6,7 +6,7 @@ use super::batch::{Batch, MAX_FIXED, blocks};
 use super::call::Layout;
 use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only, plus, product};
 use super::slices::Apart;
-use super::terms::{SINGULAR, Terms, strength};
+use super::terms::{SINGULAR, Terms, scale};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
@@ -25,7 +25,7 @@ fn within_len(terms: &Terms, values: usize, n: usize) -> usize {
 
 pub(super) struct Fits<'a> {
     /// For each block and value, each candidate's correction of its mean.
-    corrections: &'a mut [Four],
+    pub(super) corrections: &'a mut [Four],
     /// How many candidates there are.
     pub(super) count: usize,
     values: usize,
@@ -44,9 +44,9 @@ pub(super) struct Fits<'a> {
     units: &'a mut [Eight],
     /// L^-1 of a block's columns.
     solved: &'a mut [Four],
-    penalties: &'a mut [f32],
+    pub(super) penalties: &'a mut [f32],
     /// Where slices are apart, what takes the place of most of these.
-    apart: Option<Apart<'a>>,
+    pub(super) apart: Option<Apart<'a>>,
 }
 
 /// Numbers that fits take for so many slots.
@@ -78,14 +78,6 @@ impl<'a> Fits<'a> {
         };
         terms.penalties(call.config, call.basis, fits.penalties);
         Ok(fits)
-    }
-
-    /// Corrects pixels of the colours `taken` where slices are apart.
-    #[inline(always)]
-    pub(super) fn correct_slices(&mut self, batch: &Batch<'_>, taken: Colours) {
-        if let Some(apart) = &mut self.apart {
-            apart.correct(batch, self.penalties, taken, self.corrections);
-        }
     }
 
     /// Corrects pixels of one sample of the colours `taken`, which the fit to all of them has seen.
@@ -138,21 +130,19 @@ impl<'a> Fits<'a> {
     pub(super) fn factor(&mut self, batch: &Batch<'_>, training: Colours) {
         let (call, terms) = (batch.call, &batch.terms);
         let width = terms.columns();
-        let (mut own, n) = (0.0, call.n as f32);
-        if call.n == 1 {
+        let count = |sums: &Sums<'_>| at(sums.part(0).gram, 0);
+        let (count, own) = if call.n == 1 {
             self.system.set_total(&batch.between, training);
             // One sample less where a pixel's own is left out afterwards.
-            own = 1.0;
+            (count(&self.system), 1.0)
         } else {
             self.system.set_total(&batch.within, training);
             self.between.set_total(&batch.between, training);
-            let weight = self.weight_of_means(n, terms.fixed());
+            let weight = self.weight_of_means(call.n as f32, terms.fixed());
             self.system.add_weighted(&self.between, &weight);
-        }
-        let counted = if call.n == 1 { &self.system } else { &self.between };
-        let count = at(counted.part(0).gram, 0);
-        let strength = strength(call.config);
-        let scale = count.map(|count| strength * Real::max(count - own, 0.0));
+            (count(&self.between), 0.0)
+        };
+        let scale = scale(call.config, &count.map(|count| count - own));
         let Part { gram, sides, .. } = self.system.part_mut(0);
         for (j, penalty) in self.penalties.iter().enumerate() {
             let Some(diagonal) = row_mut(gram, j).last_mut() else { continue };
@@ -294,7 +284,7 @@ impl<'a> Fits<'a> {
         let (width, fixed) = (terms.columns(), terms.fixed());
         let places = row_at(batch.places, fixed, block);
         let inside = at(batch.inside, block);
-        batch.put_columns(block, self.solved, |_| ());
+        batch.put_columns(block, self.solved);
         ldlt::forward_each(self.system.part(0).gram, 0, self.solved);
         let mut leverage = [NONE; AT_ONCE];
         // A^-1 x of the fixed columns.

@@ -1,7 +1,7 @@
 //! Groups: the pixels of one window and one surface, which share fits.
 
 use super::call::Layout;
-use super::pixels::{Image, Window};
+use super::pixels::Image;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::LANES;
@@ -32,7 +32,7 @@ impl Place {
 
     /// Column, row and frame.
     #[inline]
-    pub(super) fn split(self) -> [usize; 3] {
+    fn split(self) -> [usize; 3] {
         [0, Self::BITS, 2 * Self::BITS].map(|shift| (self.0 >> shift & Self::MASK) as usize)
     }
 
@@ -134,24 +134,17 @@ impl Layout<'_> {
         })
     }
 
-    pub(super) fn window(&self, index: usize) -> Window {
+    pub(super) fn window(&self, index: usize) -> [usize; 2] {
         let [across, _] = self.windows.counts();
         let row = index / across.max(1);
         self.windows.window(index - row * across, row)
     }
 
-    /// The image's number of a window's first pixel.
-    #[inline]
-    pub(super) fn corner(&self, index: usize) -> usize {
-        let Window { x, y } = self.window(index);
-        self.windows.number(x, y, 0)
-    }
-
     /// The image's number of pixel `index` of a group, which is at `place` in its window.
     #[inline]
-    pub(super) fn pixel(&self, window: Window, place: Place, index: usize) -> usize {
+    pub(super) fn pixel(&self, [left, top]: [usize; 2], place: Place, index: usize) -> usize {
         let [x, y, frame] = place.split();
-        if self.is_joined() { index } else { self.windows.number(window.x + x, window.y + y, frame) }
+        if self.is_joined() { index } else { self.windows.number(left + x, top + y, frame) }
     }
 
     /// Divides windows `first` to before `end` into groups.
@@ -163,20 +156,15 @@ impl Layout<'_> {
             return groups.sort();
         }
         let mut filled = 0;
-        // Of each pixel of a window its place, and its number less that of the window's first.
-        let mut places: Vec<(Place, u32), { Image::MAX_WINDOW }> = Vec::new();
-        let window = self.window(first);
-        self.each_place(|place| {
-            let apart = self.pixel(window, place, 0) - self.corner(first);
-            // A window has no more pixels than that.
-            let _ = places.push((place, apart as u32));
-        });
+        // The pixels of a window that are in no group yet.
         let mut left: Vec<(Place, u32), { Image::MAX_WINDOW }> = Vec::new();
         for index in first..end {
-            let corner = self.corner(index);
-            for &(place, apart) in &places {
-                let _ = left.push((place, at(self.image.surfaces, corner + apart as usize)));
-            }
+            let [column, line] = self.window(index);
+            self.each_place(|[x, y, frame]| {
+                let number = self.windows.number(column + x, line + y, frame);
+                // A window has no more pixels than that.
+                let _ = left.push((Place::new(x, y, frame), at(self.image.surfaces, number)));
+            });
             while let Some(&(_, surface)) = left.first() {
                 let start = filled;
                 left.retain(|&(place, other)| {
@@ -199,13 +187,13 @@ impl Layout<'_> {
     }
 
     /// The places of a window by squares of 2 x 2, so that every fourth of them is not next to another.
-    fn each_place(&self, mut visit: impl FnMut(Place)) {
+    fn each_place(&self, mut visit: impl FnMut([usize; 3])) {
         let [width, height, frames] = self.windows.extent;
         for frame in 0..frames {
             for (y, x) in (0..height).step_by(2).flat_map(|y| (0..width).step_by(2).map(move |x| (y, x))) {
                 for (x, y) in [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)] {
                     if x < width && y < height {
-                        visit(Place::new(x, y, frame));
+                        visit([x, y, frame]);
                     }
                 }
             }
@@ -288,7 +276,6 @@ impl Groups<'_> {
         part(self.records, self.limits_at(group, turn), 2 * self.channels)
     }
 
-    /// The same, to be written.
     #[inline]
     pub(super) fn limits_mut(&mut self, group: &Group, turn: usize) -> &mut [f32] {
         part_mut(self.records, self.limits_at(group, turn), 2 * self.channels)

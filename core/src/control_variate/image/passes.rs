@@ -60,12 +60,14 @@ impl Call<'_> {
     }
 
     /// Fits to all groups: first to all of their pixels, then, where some are too bright, to the others.
-    pub(super) fn fit<P: Processor>(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+    fn fit<P: Processor>(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
         let later = if self.is_single_fit() { 0 } else { self.turns() };
         let all = self.fits_without_edges();
         for (pass, has_edges) in (0..=later).flat_map(|pass| [(pass, false), (pass, true)]) {
             let turn = pass.checked_sub(1);
             let mut place = 0;
+            // Groups of one size, which come one after the other, have the same.
+            let mut last = (0, 0);
             loop {
                 let mut lanes = [Group::default(); LANES];
                 let (mut used, mut columns) = (0, 0);
@@ -73,11 +75,13 @@ impl Call<'_> {
                 while let Some(group) = groups.by_size(place).filter(|_| used < LANES) {
                     let is_kind = group.has_edges == has_edges && (has_edges || all);
                     if is_kind && turn.is_none_or(|turn| groups.has_limits(&group, turn)) {
-                        let own = Terms::new(self, group.len, false).columns();
-                        if used > 0 && own != columns {
+                        if last.0 != group.len {
+                            last = (group.len, Terms::new(self, group.len, false).columns());
+                        }
+                        if used > 0 && last.1 != columns {
                             break;
                         }
-                        columns = own;
+                        columns = last.1;
                         if self.is_joined() {
                             lanes = [group; LANES];
                         } else if let Some(lane) = lanes.get_mut(used) {

@@ -237,13 +237,6 @@ pub(super) struct Windows {
     used: Rectangle,
 }
 
-/// A window's first pixel.
-#[derive(Clone, Copy)]
-pub(super) struct Window {
-    pub(super) x: usize,
-    pub(super) y: usize,
-}
-
 impl Windows {
     /// Pixels of a window, in all frames.
     pub(super) fn pixels(&self) -> usize {
@@ -298,9 +291,10 @@ impl Windows {
     /// The pixels of all windows that are used.
     fn needed(&self) -> Rectangle {
         let [across, down] = self.counts();
-        let (first, last) = (self.window(0, 0), self.window(across.saturating_sub(1), down.saturating_sub(1)));
+        let [left, top] = self.window(0, 0);
+        let [right, bottom] = self.window(across.saturating_sub(1), down.saturating_sub(1));
         let [width, height, _] = self.extent;
-        Rectangle::new(first.x, first.y, last.x + width - first.x, last.y + height - first.y)
+        Rectangle::new(left, top, right + width - left, bottom + height - top)
     }
 
     /// The first row of pixels of a row of used windows.
@@ -309,10 +303,10 @@ impl Windows {
         ((self.used.y + row) * self.stride).min(height.saturating_sub(down))
     }
 
-    pub(super) fn window(&self, column: usize, row: usize) -> Window {
+    /// The first column and row of pixels of a used window.
+    pub(super) fn window(&self, column: usize, row: usize) -> [usize; 2] {
         let [[width, ..], [across, ..]] = [self.image, self.extent];
-        let x = ((self.used.x + column) * self.stride).min(width.saturating_sub(across));
-        Window { x, y: self.top(row) }
+        [((self.used.x + column) * self.stride).min(width.saturating_sub(across)), self.top(row)]
     }
 
     #[inline]

@@ -37,12 +37,12 @@ pub(super) fn plus(a: &Eight, b: &Eight) -> Eight {
     lanes::zip(a, b, |a, b| a + b)
 }
 
-#[inline(always)]
+#[inline]
 pub(super) fn minus(a: &Eight, b: &Eight) -> Eight {
     lanes::zip(a, b, |a, b| a - b)
 }
 
-#[inline(always)]
+#[inline]
 pub(super) fn product(a: &Eight, b: &Eight) -> Eight {
     lanes::zip(a, b, |a, b| a * b)
 }

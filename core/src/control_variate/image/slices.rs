@@ -9,7 +9,7 @@
 
 use super::batch::{Batch, MAX_FIXED};
 use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, minus, only, plus, product};
-use super::terms::{SINGULAR, Terms, strength};
+use super::terms::{SINGULAR, Terms, scale};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
@@ -140,8 +140,7 @@ impl<'a> Apart<'a> {
             each.fold(NONE, |sum, square| plus(&sum, &square))
         };
         let count = diagonal(&self.totals, 0);
-        let strength = strength(batch.call.config);
-        let scale = count.map(|count| strength * Real::max(count - 1.0, 0.0));
+        let scale = scale(batch.call.config, &count.map(|count| count - 1.0));
         for (j, penalty) in penalties.iter().enumerate().take(width) {
             let out = row_mut(self.border, j);
             out.iter_mut().for_each(|out| *out = NONE);
@@ -261,7 +260,7 @@ impl<'a> Apart<'a> {
         let (terms, values, count) = (&batch.terms, batch.values, batch.terms.ends.len());
         let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(batch));
         let places = row_at(batch.places, fixed, block);
-        batch.put_columns(block, self.columns, |_| ());
+        batch.put_columns(block, self.columns);
         let (Some(slices), Some(inside)) = (batch.slices.get(block), batch.inside.get(block)) else { return };
         for (line, slices) in slices.iter().enumerate() {
             let slices = slices.map(|slice| slice as usize);

@@ -7,7 +7,8 @@ use super::choice::{Choices, Shares, Spreads};
 use super::edges::Edges;
 use super::fit::Fits;
 use super::groups::Groups;
-use super::products::{COLOURS, Colours, Eight};
+use super::products::{COLOURS, Colours, Eight, Four};
+use super::slices::Apart;
 use super::sums::Band;
 use crate::arena::Arena;
 use crate::error::Error;
@@ -15,8 +16,8 @@ use crate::processor::{Processor, Step};
 
 /// Corrects every pixel of the colours `taken`, of which fits have seen no sample, by those to the others of them.
 pub(super) fn correct<P: Processor>(fits: &mut Fits<'_>, batch: &Batch<'_>, taken: Colours) {
-    if batch.terms.slices > 0 {
-        correct_slices::<P>(fits, batch, taken);
+    if let Some(apart) = &mut fits.apart {
+        correct_slices::<P>(apart, batch, fits.penalties, taken, fits.corrections);
     } else if batch.call.n == 1 {
         factor::<P>(fits, batch, taken);
         leave_own::<P>(fits, batch, taken);
@@ -57,7 +58,9 @@ steps! {
     factor = Fits::factor(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, training: Colours) -> ();
     leave_own = Fits::leave_own(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, taken: Colours) -> ();
     correct_colour = Fits::correct_colour(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, colour: usize) -> ();
-    correct_slices = Fits::correct_slices(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, taken: Colours) -> ();
+    correct_slices = Apart::correct(
+        apart: &'s mut Apart<'a>, batch: &'s Batch<'s>, penalties: &'s [f32], taken: Colours, corrections: &'s mut [Four],
+    ) -> ();
     load_edges = Edges::load(edges: &'s mut Edges<'a>, batch: &'s Batch<'s>) -> ();
     correct_edges = Edges::correct(
         edges: &'s mut Edges<'a>, batch: &'s Batch<'s>, taken: Colours, fits: &'s mut Fits<'a>,

@@ -4,7 +4,6 @@ use super::super::config::{Config, Estimate};
 use super::super::result::{mean_divisor, saturate, standard_error};
 use super::call::{Call, Layout};
 use super::groups::{Groups, Place};
-use super::pixels::Window;
 use super::products::{Eight, NONE, product};
 use crate::arena::Arena;
 use crate::error::Error;
@@ -107,7 +106,7 @@ impl Call<'_> {
         for group in (0..groups.count).map(|index| groups.numbered(index)).filter(|group| all || group.has_edges) {
             let Some(([gain, has_error], errors)) = groups.told(&group).split_first_chunk() else { continue };
             let window = self.window(group.window);
-            let (top, left) = (window.y % band.rows.max(1), window.x - self.windows.given.x);
+            let (left, top) = (window[0] - self.windows.given.x, window[1] % band.rows.max(1));
             let members = groups.members(&group);
             let corrections = from(groups.corrections, group.start * channels);
             for begin in (0..group.len).step_by(LANES) {
@@ -160,7 +159,7 @@ impl Call<'_> {
     /// Corrections and errors of pixels whose values were divided by factors.
     fn times_factors(
         &self,
-        window: Window,
+        window: [usize; 2],
         places: &[Place; LANES],
         begin: usize,
         channel: usize,

@@ -7,6 +7,7 @@ use super::products::{Eight, Four, times};
 use crate::basis::{Basis, MAX_ORDER};
 use crate::lanes::{self, LANES};
 use crate::matrix::{at, halves_mut};
+use crate::real::Real;
 use crate::rows::{part, rows_mut};
 use heapless::Vec;
 
@@ -28,8 +29,11 @@ const STRENGTH: f64 = 0.003;
 /// The least that 1 less a sample's leverage is taken for.
 pub(super) const SINGULAR: f32 = 64.0 * f32::EPSILON;
 
-pub(super) fn strength(config: &Config) -> f32 {
-    ridge::strength::<f32>(config.ridge, STRENGTH) as f32
+/// What penalties of a fit to so many samples are multiplied by.
+#[inline]
+pub(super) fn scale(config: &Config, samples: &Eight) -> Eight {
+    let strength = ridge::strength::<f32>(config.ridge, STRENGTH) as f32;
+    samples.map(|samples| strength * Real::max(samples, 0.0))
 }
 
 /// Columns of a fit, in this order, so that each candidate is a prefix: the constant and the pixels' axes, which follow
@@ -169,7 +173,7 @@ impl Terms {
 
     /// What is added to a column's sum of squares, `square`, for its penalty. What a control function is measured in is
     /// its maker's choice.
-    #[inline(always)]
+    #[inline]
     pub(super) fn ridge(&self, column: usize, penalty: f32, scale: &Eight, square: &Eight, count: &Eight) -> Eight {
         let mut ridge = scale.map(|scale| scale * penalty);
         if (self.fixed()..self.fixed() + self.moving.0).contains(&column) {
