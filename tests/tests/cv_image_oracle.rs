@@ -165,7 +165,10 @@ impl Case {
         } else {
             let places: Vec<Vec<f64>> = rows.rows.iter().step_by(n).map(|row| row[..axes].to_vec()).collect();
             let share = |channel: usize| pixels::noise_share(&places, &values_of(channel), n);
-            let share = (0..config.channels).map(share).fold(1.0, f64::min);
+            // Of many slices each sample counts as much as one of another pixel.
+            let shared = degrees.len() - config.slices;
+            let is_apart = basis.weights.len() - shared > 32.max(2 * shared);
+            let share = if is_apart { 1.0 } else { (0..config.channels).map(share).fold(1.0, f64::min) };
             pixels::fit(&rows, &values_of(channel), n, share, strength)
         };
         fit.slopes[..axes].fill(0.0);

@@ -15,9 +15,10 @@ use super::terms::{MAX_AXES, Terms};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, copy, from, from_mut, halves_mut, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{at, copy, first_mut, from, from_mut, halves_mut, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
 use crate::rows::{first, halves, rows, rows_mut};
+use core::array::from_fn;
 
 /// The most numbers of a place.
 pub(super) const MAX_FIXED: usize = 1 + MAX_AXES;
@@ -62,7 +63,7 @@ pub(super) struct Batch<'a> {
     /// For each block and channel, the coefficient of what is known, and its integral.
     pub(super) coefficients: &'a mut [Four],
     pub(super) integrals: &'a mut [Four],
-    /// For each block, the slices of the pixels' samples, where slices are apart.
+    /// For each block, the slices of the pixels' one sample, where slices are apart.
     pub(super) slices: &'a mut [Four],
     /// Values of a sample.
     pub(super) values: usize,
@@ -70,9 +71,9 @@ pub(super) struct Batch<'a> {
     pub(super) means: &'a mut [Four],
     /// For each block and function, its mean over the pixels' samples.
     pub(super) functions: &'a mut [Four],
-    /// Of pixels' means, times the root of the number of samples.
+    /// Of pixels' means, times the root of the number of samples. Where slices are apart: of samples, slice by slice.
     pub(super) between: Sums<'a>,
-    /// Of several samples in each pixel, of how far they are from their pixel's mean.
+    /// Of several samples in each pixel, of how far they are from their pixel's mean. Where slices are apart: of values.
     pub(super) within: Sums<'a>,
 }
 
@@ -94,10 +95,12 @@ pub(super) fn batch_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Opt
     let (slices, apart) = (terms.slices.max(1), usize::from(terms.slices > 0));
     let each = 2 + apart + terms.fixed() + 2 * channels + values + functions + known;
     let rows = AT_ONCE * (functions + columns + 2 * values);
-    let pixel = Sums::len(functions, values) + functions + 2 * values;
-    let deviations = AT_ONCE * (functions + values) * functions + AT_ONCE * values;
+    let centred = terms.centred();
+    let pixel = Sums::len(centred, values) + centred + 2 * values;
+    let deviations = AT_ONCE * (centred + values) * centred + AT_ONCE * values;
     let [between, within] = parts(layout);
-    let sums = (between * slices + within + apart) * Sums::len(columns, values) + rows + pixel + deviations;
+    let within = within * Sums::len(if apart > 0 { 0 } else { columns }, values);
+    let sums = (between * slices + apart) * Sums::len(columns, values) + within + rows + pixel + deviations;
     blocks(layout, slots).checked_mul(AT_ONCE * each)?.checked_add(sums)?.checked_mul(LANES)
 }
 
@@ -152,7 +155,7 @@ impl<'a> Batch<'a> {
             means: arena.take_fours(blocks * values)?,
             functions: arena.take_fours(blocks * terms.functions)?,
             between: Sums::new(between * terms.slices.max(1), columns, values, arena)?,
-            within: Sums::new(within, columns, values, arena)?,
+            within: Sums::new(within, if terms.slices > 0 { 0 } else { columns }, values, arena)?,
             terms,
         })
     }
@@ -332,7 +335,7 @@ impl<'a> Batch<'a> {
         let mut arena = arena.scratch();
         let mut samples = Rows::new(functions, values, &mut arena)?;
         let mut pixels = Rows::new(columns, values, &mut arena)?;
-        let mut apart = Apart::new(functions, values, &mut arena)?;
+        let mut apart = Apart::new(self.terms.centred(), values, &mut arena)?;
         let products = arena.take_lanes(if slices > 0 { Sums::len(columns, values) } else { 0 })?;
         self.set_units();
         self.between.empty();
@@ -345,18 +348,17 @@ impl<'a> Batch<'a> {
                 copy(row_at_mut(self.means, values, block), samples.values);
             } else {
                 for row in 0..AT_ONCE {
-                    self.load_several((block, row), &mut samples, &mut apart);
+                    self.load_several((block, row), &mut samples, &mut apart, &mut pixels, products);
                 }
             }
-            self.put_means(block, &mut pixels);
-            if let Some(slices) = self.slices.get_mut(block) {
-                let at = call.basis.slices_at(&samples.x);
-                for (slices, at) in slices.iter_mut().zip(at.as_chunks::<LANES>().0) {
-                    *slices = at.map(|slice| slice as f32);
-                }
-                self.between.add_sliced(part * self.terms.slices, slices, pixels.columns, pixels.values, products);
-            } else {
+            if slices == 0 {
+                self.put_means(block, &mut pixels);
                 self.between.add(part, pixels.columns, pixels.values);
+            } else if call.n == 1 {
+                self.put_means(block, &mut pixels);
+                let picked = call.slices(&samples);
+                self.between.add_sliced(part * slices, &picked, pixels.columns, pixels.values, products);
+                row_at_mut(self.slices, 1, block).fill(picked);
             }
             if call.n > 1 {
                 let inside = at(self.inside, block);
@@ -364,7 +366,7 @@ impl<'a> Batch<'a> {
                 for (out, place) in places.iter_mut().zip(row_at(self.places, fixed, block)) {
                     *out = zip_four(&inside, place, only);
                 }
-                apart.mirror(functions);
+                apart.mirror(self.terms.centred());
                 self.within.add_apart(part, &self.terms, first(&places, fixed), &apart);
             }
         }
@@ -377,8 +379,15 @@ impl<'a> Batch<'a> {
 
     /// Reads the samples of one slot: their means, and the products of how far they are from those.
     #[inline(always)]
-    fn load_several(&mut self, (block, row): (usize, usize), samples: &mut Rows<'_>, apart: &mut Apart<'_>) {
-        let (call, fixed, functions) = (self.call, self.terms.fixed(), self.terms.functions);
+    fn load_several(
+        &mut self,
+        (block, row): (usize, usize),
+        samples: &mut Rows<'_>,
+        apart: &mut Apart<'_>,
+        pixels: &mut Rows<'_>,
+        products: &mut [Eight],
+    ) {
+        let (call, fixed, slices, centred) = (self.call, self.terms.fixed(), self.terms.slices, self.terms.centred());
         let inside = at(self.inside, block)[row % AT_ONCE];
         let is_full = inside == [1.0; LANES];
         apart.sums.empty();
@@ -386,6 +395,16 @@ impl<'a> Batch<'a> {
         for begin in (0..call.n).step_by(AT_ONCE) {
             let count = AT_ONCE.min(call.n - begin);
             call.read(self, (block, row..row + 1), begin..begin + count, samples);
+            if slices > 0 {
+                let lines = from_fn(|line| if line < count { inside } else { NONE });
+                self.put_samples((block, row), &lines, samples.columns, pixels.columns);
+                for (out, value) in pixels.values.iter_mut().zip(samples.values.iter()) {
+                    *out = zip_four(&lines, value, only);
+                }
+                let part = if self.has_colours { block % COLOURS } else { 0 };
+                let picked = call.slices(samples);
+                self.between.add_sliced(part * slices, &picked, pixels.columns, pixels.values, products);
+            }
             if begin == 0 {
                 apart.firsts.iter_mut().zip(samples.values.iter()).for_each(|(first, values)| *first = values[0]);
             }
@@ -393,7 +412,8 @@ impl<'a> Batch<'a> {
             for (values, first) in samples.values.iter_mut().zip(apart.firsts.iter()) {
                 *values = values.map(|value| minus(&value, first));
             }
-            let columns = samples.columns.iter_mut().chain(samples.values.iter_mut());
+            let columns = first_mut(samples.columns, centred);
+            let columns = columns.iter_mut().chain(samples.values.iter_mut());
             for (sum, four) in apart.totals.iter_mut().zip(columns) {
                 four.iter_mut().skip(count).for_each(|row| *row = NONE);
                 *sum = plus(sum, &total(four));
@@ -404,13 +424,13 @@ impl<'a> Batch<'a> {
                     *values = values.map(|value| only(&inside, &value));
                 }
             }
-            apart.sums.add(0, samples.columns, samples.values);
+            apart.sums.add(0, first(samples.columns, centred), samples.values);
         }
         let inverse = 1.0 / call.n as f32;
-        let (sums, values) = halves(apart.totals, functions);
+        let (sums, values) = halves(apart.totals, centred);
         let one = at(row_at(self.places, fixed, block), 0)[row % AT_ONCE];
         let mean = |sum: &Eight| only(&one, &sum.map(|sum| sum * inverse));
-        for (out, sum) in row_at_mut(self.functions, functions, block).iter_mut().zip(sums.iter()) {
+        for (out, sum) in row_at_mut(self.functions, self.terms.functions, block).iter_mut().zip(sums.iter()) {
             out[row] = mean(sum);
             lanes::keep_together();
         }
@@ -419,7 +439,28 @@ impl<'a> Batch<'a> {
         {
             out[row] = only(&one, &plus(&mean(sum), first));
         }
-        apart.put(row, &inside, inverse, functions);
+        apart.put(row, &inside, inverse, centred);
+    }
+
+    /// The columns of samples of a slot's pixels, by the functions at them, in the lanes of those of the `lines`.
+    #[inline(always)]
+    pub(super) fn put_samples(
+        &self,
+        (block, row): (usize, usize),
+        lines: &Four,
+        functions: &[Four],
+        columns: &mut [Four],
+    ) {
+        let terms = &self.terms;
+        let (fixed, rest) = halves_mut(columns, terms.fixed());
+        let (own, products) = halves_mut(rest, terms.functions);
+        for (out, place) in fixed.iter_mut().zip(row_at(self.places, terms.fixed(), block)) {
+            *out = lines.map(|line| only(&line, &place[row % AT_ONCE]));
+        }
+        for (out, function) in own.iter_mut().zip(functions) {
+            *out = zip_four(lines, function, only);
+        }
+        terms.multiply(fixed, own, products);
     }
 
     /// The columns and values of a block's pixels that fits are made to.

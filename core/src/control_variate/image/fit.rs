@@ -2,11 +2,12 @@
 //!
 //! One factorisation A = L D L' serves every candidate, as each is a prefix of the columns and so of L.
 
+use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED, blocks};
 use super::call::Layout;
 use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only, plus, product};
 use super::slices::Apart;
-use super::terms::{SINGULAR, Terms, scale};
+use super::terms::{MAX_FITS, SINGULAR, Terms, scale};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
@@ -95,6 +96,23 @@ impl<'a> Fits<'a> {
         self.judge(batch, colour);
         for block in batch.blocks(Colours(1 << colour)) {
             self.apply(batch, block);
+        }
+    }
+
+    /// The same by fits to slices apart.
+    #[inline(always)]
+    pub(super) fn correct_slices(&mut self, batch: &Batch<'_>, colour: usize) {
+        let Some(apart) = &mut self.apart else { return };
+        let mut left = [NONE; 2 * Config::MAX_CHANNELS * MAX_FITS];
+        for block in batch.blocks(Colours(1 << colour)) {
+            apart.correct(batch, block, self.corrections, &mut left);
+        }
+        let fits = batch.terms.ends.len();
+        for (value, (whole, left)) in batch.within.part(colour).squares.iter().zip(rows(&left, fits)).enumerate() {
+            first_mut(row_at_mut(self.within, 1 + self.count, value * COLOURS + colour), 1).fill(*whole);
+            for (fit, left) in left.iter().enumerate() {
+                self.set_within(value, colour, 1 + fit, &batch.joined(left));
+            }
         }
     }
 

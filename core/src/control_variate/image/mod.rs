@@ -144,14 +144,14 @@ pub fn estimate_image_by<P: Processor>(
 
 impl<'a> Layout<'a> {
     fn new(config: &'a Config, image: &'a Image<'a>) -> Result<Self, Error> {
-        let shape = config.checked_shape()?;
+        let shape = config.checked_shape()?.apart();
         check_supported(config, image)?;
         Ok(Self { config, image, windows: image.windows()?, pixels: image.pixels()?, shape, n: 0 })
     }
 
     /// The same, of so many samples in each pixel.
     fn of(self, n: usize) -> Self {
-        Self { shape: if n == 1 { self.shape.apart() } else { self.shape }, n, ..self }
+        Self { n, ..self }
     }
 
     /// How many rows of windows are worked on before pixels are written, and how many rows of pixels those touch.

@@ -128,6 +128,16 @@ impl Call<'_> {
         }
     }
 
+    /// The slices of samples that were read.
+    #[inline(always)]
+    pub(super) fn slices(&self, rows: &Rows<'_>) -> Four {
+        let mut out = [NONE; AT_ONCE];
+        for (out, slices) in out.iter_mut().zip(self.basis.slices_at(&rows.x).as_chunks::<LANES>().0) {
+            *out = slices.map(|slice| slice as f32);
+        }
+        out
+    }
+
     /// Values of samples of each pixel, as they were given but for factors and what is known of them: in each column
     /// from `row` on.
     #[inline]

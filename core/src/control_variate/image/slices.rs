@@ -1,14 +1,16 @@
-//! Fits to one sample in each pixel, where the last coordinate picks a slice.
+//! Fits where the last coordinate picks one of many slices.
 //!
 //! A slice's own columns are zero at the samples of others. The matrix is then an arrow: a block for each slice, and a
 //! border of the columns that slices share. Each block is made of its own samples' sums alone, takes its share of the
 //! border with it, and what is left of that is a system of the shared columns.
 //!
 //! Indicators are not centred here. The constant, which has no penalty, and the trends, which have next to none, take
-//! the difference.
+//! the difference. Of several samples in each pixel, each counts as much as one of another pixel would: less the
+//! pixel's mean, as other fits count them, they would be of several slices at once.
 
+use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED};
-use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, minus, only, plus, product};
+use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Rows, Sums, minus, only, plus, product};
 use super::terms::{SINGULAR, Terms, scale};
 use crate::arena::Arena;
 use crate::error::Error;
@@ -38,8 +40,12 @@ pub(super) struct Apart<'a> {
     gathered: &'a mut [Eight],
     /// L^-1 of a row's columns; coefficients while these are made.
     solved: &'a mut [Eight],
-    /// A block's shared columns.
+    /// A block's shared columns, or those of four samples of its pixels.
     columns: &'a mut [Four],
+    samples: Rows<'a>,
+    /// Of a pixel's samples, for each value and candidate: sums of what is fitted, of what that leaves of how far
+    /// values are from the first, and of squares of this.
+    explained: &'a mut [[Eight; 3]],
     /// For each value and candidate those of the fixed columns.
     trends: &'a mut [Eight],
     /// For each value, candidate and slice, what shared columns are multiplied by at a sample of the slice. The fixed
@@ -63,6 +69,18 @@ fn symmetric(triangle: &[Eight], i: usize, k: usize) -> Eight {
     at(triangle, packed_len(i.max(k)) + i.min(k))
 }
 
+/// What a fit is at samples, but for what all slices have in common: of the lane's slice each.
+#[inline(always)]
+fn fitted_at(columns: &[Four], line: usize, of: &[&[Eight]; LANES], gathered: &mut [Eight]) -> Eight {
+    gather(gathered, of);
+    let mut fitted = NONE;
+    for (column, coefficient) in columns.iter().zip(gathered) {
+        fitted = lanes::plus_product(fitted, column[line % AT_ONCE], *coefficient);
+        lanes::keep_together();
+    }
+    fitted
+}
+
 impl<'a> Apart<'a> {
     /// Rows of a slice's block.
     fn order(terms: &Terms, values: usize) -> usize {
@@ -78,7 +96,8 @@ impl<'a> Apart<'a> {
         let each = Sums::len(width, values) + order * terms.all_own();
         let coefficients = values * terms.ends.len() * (terms.fixed() + slices * width);
         let border = packed_len(width) + (values + terms.fixed()) * width;
-        slices * each + border + order * (1 + terms.all_own()) + width + AT_ONCE * width + coefficients
+        let samples = AT_ONCE * (width + terms.functions + values) + 3 * values * terms.ends.len();
+        slices * each + border + order * (1 + terms.all_own()) + width + samples + coefficients
     }
 
     pub(super) fn new(terms: &Terms, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
@@ -94,16 +113,19 @@ impl<'a> Apart<'a> {
             gathered: arena.take_lanes(order * terms.all_own() + width)?,
             solved: arena.take_lanes(order)?,
             columns: arena.take_fours(width)?,
+            samples: Rows::new(terms.functions, values, arena)?,
+            explained: arena.take_lanes(3 * values * fits)?.as_chunks_mut().0,
             trends: arena.take_lanes(values * fits * terms.fixed())?,
             coefficients: arena.take_lanes(values * fits * slices * width)?,
         })
     }
 
-    /// Corrects every pixel of the colours `taken` by fits to the others of them.
+    /// Makes the fits to the colours `training`, and corrects the pixels of others, or of one sample those, by fits to
+    /// the other pixels.
     #[inline(always)]
-    pub(super) fn correct(&mut self, batch: &Batch<'_>, penalties: &[f32], taken: Colours, corrections: &mut [Four]) {
+    pub(super) fn fit(&mut self, batch: &Batch<'_>, penalties: &[f32], training: Colours, corrections: &mut [Four]) {
         let terms = &batch.terms;
-        self.totals.set_total(&batch.between, taken);
+        self.totals.set_total(&batch.between, training);
         let mut begin = 0;
         for fit in 0..terms.ends.len() {
             // The last of those with as many own columns has all the shared ones that these have.
@@ -117,10 +139,55 @@ impl<'a> Apart<'a> {
                     self.solve(batch, value, fit);
                 }
             }
-            for block in batch.blocks(taken) {
-                self.apply(batch, block, begin..fit + 1, corrections);
+            for block in batch.blocks(training).filter(|_| batch.call.n == 1) {
+                self.leave_own(batch, block, begin..fit + 1, corrections);
             }
             begin = fit + 1;
+        }
+    }
+
+    /// Corrects a block's pixels of several samples, which the fits have not seen, and adds to `left` for each value
+    /// and candidate what the fits leave of the samples about their pixels' means.
+    #[inline(always)]
+    pub(super) fn correct(&mut self, batch: &Batch<'_>, block: usize, corrections: &mut [Four], left: &mut [Eight]) {
+        let (terms, call, count) = (&batch.terms, batch.call, batch.terms.ends.len());
+        let inverse = 1.0 / call.n as f32;
+        for slot in 0..AT_ONCE {
+            self.explained.iter_mut().for_each(|sums| *sums = [NONE; 3]);
+            let mut firsts = [NONE; 2 * Config::MAX_CHANNELS];
+            for begin in (0..call.n).step_by(AT_ONCE) {
+                let lines = AT_ONCE.min(call.n - begin);
+                call.read(batch, (block, slot..slot + 1), begin..begin + lines, &mut self.samples);
+                batch.put_samples((block, slot), &[[1.0; LANES]; AT_ONCE], self.samples.columns, self.columns);
+                if begin == 0 {
+                    firsts.iter_mut().zip(&*self.samples.values).for_each(|(first, values)| *first = values[0]);
+                }
+                let picked = call.slices(&self.samples);
+                for (line, slices) in picked.iter().enumerate().take(lines) {
+                    let slices = slices.map(|slice| slice as usize);
+                    for (which, [fitted, rest, squares]) in self.explained.iter_mut().enumerate() {
+                        let (value, fit) = (which / count, which % count);
+                        let all = from(self.coefficients, which * terms.slices * terms.columns());
+                        let of = slices.map(|slice| row_at(all, terms.columns(), slice));
+                        let gathered = first_mut(self.gathered, at(&terms.ends, fit));
+                        let one = fitted_at(self.columns, line, &of, gathered);
+                        let value = minus(&at(self.samples.values, value)[line], &at(&firsts, value));
+                        let value = minus(&value, &one);
+                        (*fitted, *rest) = (plus(fitted, &one), plus(rest, &value));
+                        *squares = lanes::plus_product(*squares, value, value);
+                        lanes::keep_together();
+                    }
+                }
+            }
+            let inside = at(batch.inside, block)[slot];
+            for (which, ([fitted, rest, squares], left)) in self.explained.iter().zip(left.iter_mut()).enumerate() {
+                let row = row_at_mut(corrections, terms.candidates(), block * batch.values + which / count);
+                if let Some(out) = row.get_mut(which % count) {
+                    out[slot] = fitted.map(|sum| sum * -inverse);
+                }
+                let apart = lanes::minus_product(*squares, rest.map(|sum| sum * inverse), *rest);
+                *left = plus(left, &only(&inside, &apart));
+            }
         }
     }
 
@@ -140,7 +207,9 @@ impl<'a> Apart<'a> {
             each.fold(NONE, |sum, square| plus(&sum, &square))
         };
         let count = diagonal(&self.totals, 0);
-        let scale = scale(batch.call.config, &count.map(|count| count - 1.0));
+        // One sample less where a pixel's own is left out afterwards.
+        let left_out = if batch.call.n == 1 { 1.0 } else { 0.0 };
+        let scale = scale(batch.call.config, &count.map(|count| count - left_out));
         for (j, penalty) in penalties.iter().enumerate().take(width) {
             let out = row_mut(self.border, j);
             out.iter_mut().for_each(|out| *out = NONE);
@@ -256,7 +325,7 @@ impl<'a> Apart<'a> {
 
     /// Corrects a block by the fit to the other pixels; see `Fits::leave_block`.
     #[inline(always)]
-    fn apply(&mut self, batch: &Batch<'_>, block: usize, fits: Range<usize>, corrections: &mut [Four]) {
+    fn leave_own(&mut self, batch: &Batch<'_>, block: usize, fits: Range<usize>, corrections: &mut [Four]) {
         let (terms, values, count) = (&batch.terms, batch.values, batch.terms.ends.len());
         let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(batch));
         let places = row_at(batch.places, fixed, block);
@@ -309,13 +378,8 @@ impl<'a> Apart<'a> {
                 for value in 0..values {
                     let which = value * count + fit;
                     let all = from(self.coefficients, which * terms.slices * terms.columns());
-                    let coefficients = first_mut(self.gathered, end);
-                    gather(coefficients, &slices.map(|slice| row_at(all, terms.columns(), slice)));
-                    let mut fitted = NONE;
-                    for (column, coefficient) in self.columns.iter().zip(&*coefficients) {
-                        fitted = lanes::plus_product(fitted, column[line], *coefficient);
-                        lanes::keep_together();
-                    }
+                    let of = slices.map(|slice| row_at(all, terms.columns(), slice));
+                    let fitted = fitted_at(self.columns, line, &of, first_mut(self.gathered, end));
                     let mut trend = NONE;
                     for (place, coefficient) in places.iter().zip(row_at(self.trends, fixed, which)) {
                         trend = lanes::plus_product(trend, place[line], *coefficient);

@@ -16,15 +16,18 @@ use crate::processor::{Processor, Step};
 
 /// Corrects every pixel of the colours `taken`, of which fits have seen no sample, by those to the others of them.
 pub(super) fn correct<P: Processor>(fits: &mut Fits<'_>, batch: &Batch<'_>, taken: Colours) {
-    if let Some(apart) = &mut fits.apart {
-        correct_slices::<P>(apart, batch, fits.penalties, taken, fits.corrections);
-    } else if batch.call.n == 1 {
-        factor::<P>(fits, batch, taken);
-        leave_own::<P>(fits, batch, taken);
-    } else {
-        for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
-            factor::<P>(fits, batch, taken.without(colour));
-            correct_colour::<P>(fits, batch, colour);
+    let several = batch.call.n > 1;
+    for colour in (0..if several { COLOURS } else { 1 }).filter(|&colour| !several || taken.has(colour)) {
+        let training = if several { taken.without(colour) } else { taken };
+        match &mut fits.apart {
+            Some(apart) => fit_slices::<P>(apart, batch, fits.penalties, training, fits.corrections),
+            None => factor::<P>(fits, batch, training),
+        }
+        match (several, fits.apart.is_some()) {
+            (true, true) => correct_slices::<P>(fits, batch, colour),
+            (true, false) => correct_colour::<P>(fits, batch, colour),
+            (false, true) => {}
+            (false, false) => leave_own::<P>(fits, batch, training),
         }
     }
 }
@@ -58,9 +61,11 @@ steps! {
     factor = Fits::factor(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, training: Colours) -> ();
     leave_own = Fits::leave_own(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, taken: Colours) -> ();
     correct_colour = Fits::correct_colour(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, colour: usize) -> ();
-    correct_slices = Apart::correct(
-        apart: &'s mut Apart<'a>, batch: &'s Batch<'s>, penalties: &'s [f32], taken: Colours, corrections: &'s mut [Four],
+    fit_slices = Apart::fit(
+        apart: &'s mut Apart<'a>, batch: &'s Batch<'s>, penalties: &'s [f32], training: Colours,
+        corrections: &'s mut [Four],
     ) -> ();
+    correct_slices = Fits::correct_slices(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, colour: usize) -> ();
     load_edges = Edges::load(edges: &'s mut Edges<'a>, batch: &'s Batch<'s>) -> ();
     correct_edges = Edges::correct(
         edges: &'s mut Edges<'a>, batch: &'s Batch<'s>, taken: Colours, fits: &'s mut Fits<'a>,

@@ -115,6 +115,12 @@ impl Terms {
         self.fixed() + self.functions + self.axes * self.moving.1
     }
 
+    /// Functions whose means over a pixel's samples fits see, and what is about them: none where slices are apart.
+    #[inline]
+    pub(super) fn centred(&self) -> usize {
+        if self.slices > 0 { 0 } else { self.functions }
+    }
+
     /// A slice's own columns: its indicator, its copies, and its indicator times each axis.
     pub(super) fn all_own(&self) -> usize {
         let slopes = if self.has_slopes { self.axes } else { 0 };
