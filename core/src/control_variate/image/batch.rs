@@ -8,7 +8,7 @@ use super::call::{Call, Layout};
 use super::groups::{Group, Groups, Place};
 use super::pixels::Image;
 use super::products::{
-    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sums, add_products, minus, only, plus, plus_four,
+    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sliced, Sums, add_products, minus, only, plus, plus_four,
     product, times, total, zip_four,
 };
 use super::terms::{MAX_AXES, Terms};
@@ -100,7 +100,8 @@ pub(super) fn batch_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Opt
     let deviations = AT_ONCE * (centred + values) * centred + AT_ONCE * values;
     let [between, within] = parts(layout);
     let within = within * Sums::len(if apart > 0 { 0 } else { columns }, values);
-    let sums = (between * slices + apart) * Sums::len(columns, values) + within + rows + pixel + deviations;
+    let sums = between * slices * Sums::len(columns, values) + Sliced::len(terms.slices, columns, values);
+    let sums = sums + within + rows + pixel + deviations;
     blocks(layout, slots).checked_mul(AT_ONCE * each)?.checked_add(sums)?.checked_mul(LANES)
 }
 
@@ -336,39 +337,42 @@ impl<'a> Batch<'a> {
         let mut samples = Rows::new(functions, values, &mut arena)?;
         let mut pixels = Rows::new(columns, values, &mut arena)?;
         let mut apart = Apart::new(self.terms.centred(), values, &mut arena)?;
-        let products = arena.take_lanes(if slices > 0 { Sums::len(columns, values) } else { 0 })?;
+        let mut sliced = Sliced::new(slices, columns, values, &mut arena)?;
         self.set_units();
         self.between.empty();
         self.within.empty();
-        for block in 0..self.inside.len() {
-            let part = if self.has_colours { block % COLOURS } else { 0 };
-            if call.n == 1 {
-                call.read(self, (block, 0..AT_ONCE), 0..1, &mut samples);
-                copy(row_at_mut(self.functions, functions, block), samples.columns);
-                copy(row_at_mut(self.means, values, block), samples.values);
-            } else {
-                for row in 0..AT_ONCE {
-                    self.load_several((block, row), &mut samples, &mut apart, &mut pixels, products);
+        let parts = if self.has_colours { COLOURS } else { 1 };
+        for part in 0..parts {
+            for block in (part..self.inside.len()).step_by(parts) {
+                if call.n == 1 {
+                    call.read(self, (block, 0..AT_ONCE), 0..1, &mut samples);
+                    copy(row_at_mut(self.functions, functions, block), samples.columns);
+                    copy(row_at_mut(self.means, values, block), samples.values);
+                } else {
+                    for row in 0..AT_ONCE {
+                        self.load_several((block, row), &mut samples, &mut apart, &mut pixels, &mut sliced);
+                    }
+                }
+                if slices == 0 {
+                    self.put_means(block, &mut pixels);
+                    self.between.add(part, pixels.columns, pixels.values);
+                } else if call.n == 1 {
+                    self.put_means(block, &mut pixels);
+                    let picked = call.slices(&samples);
+                    sliced.add(&picked, pixels.columns, pixels.values);
+                    row_at_mut(self.slices, 1, block).fill(picked);
+                }
+                if call.n > 1 {
+                    let inside = at(self.inside, block);
+                    let mut places = [[NONE; AT_ONCE]; MAX_FIXED];
+                    for (out, place) in places.iter_mut().zip(row_at(self.places, fixed, block)) {
+                        *out = zip_four(&inside, place, only);
+                    }
+                    apart.mirror(self.terms.centred());
+                    self.within.add_apart(part, &self.terms, first(&places, fixed), &apart);
                 }
             }
-            if slices == 0 {
-                self.put_means(block, &mut pixels);
-                self.between.add(part, pixels.columns, pixels.values);
-            } else if call.n == 1 {
-                self.put_means(block, &mut pixels);
-                let picked = call.slices(&samples);
-                self.between.add_sliced(part * slices, &picked, pixels.columns, pixels.values, products);
-                row_at_mut(self.slices, 1, block).fill(picked);
-            }
-            if call.n > 1 {
-                let inside = at(self.inside, block);
-                let mut places = [[NONE; AT_ONCE]; MAX_FIXED];
-                for (out, place) in places.iter_mut().zip(row_at(self.places, fixed, block)) {
-                    *out = zip_four(&inside, place, only);
-                }
-                apart.mirror(self.terms.centred());
-                self.within.add_apart(part, &self.terms, first(&places, fixed), &apart);
-            }
+            sliced.put(part * slices, &mut self.between);
         }
         if self.is_joined {
             self.between.join();
@@ -385,7 +389,7 @@ impl<'a> Batch<'a> {
         samples: &mut Rows<'_>,
         apart: &mut Apart<'_>,
         pixels: &mut Rows<'_>,
-        products: &mut [Eight],
+        sliced: &mut Sliced<'_>,
     ) {
         let (call, fixed, slices, centred) = (self.call, self.terms.fixed(), self.terms.slices, self.terms.centred());
         let inside = at(self.inside, block)[row % AT_ONCE];
@@ -401,9 +405,7 @@ impl<'a> Batch<'a> {
                 for (out, value) in pixels.values.iter_mut().zip(samples.values.iter()) {
                     *out = zip_four(&lines, value, only);
                 }
-                let part = if self.has_colours { block % COLOURS } else { 0 };
-                let picked = call.slices(samples);
-                self.between.add_sliced(part * slices, &picked, pixels.columns, pixels.values, products);
+                sliced.add(&call.slices(samples), pixels.columns, pixels.values);
             }
             if begin == 0 {
                 apart.firsts.iter_mut().zip(samples.values.iter()).for_each(|(first, values)| *first = values[0]);

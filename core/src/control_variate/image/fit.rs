@@ -54,7 +54,7 @@ pub(super) struct Fits<'a> {
 pub(super) fn fits_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
     let (columns, values, count) = (terms.columns(), layout.values(), terms.candidates());
     let totals = 2 * Sums::len(columns, values) + within_len(terms, values, layout.n);
-    let once = totals + Apart::len(terms, values) + (values * count + MAX_FIXED + 1 + AT_ONCE) * columns;
+    let once = totals + Apart::len(terms, values, layout.n) + (values * count + MAX_FIXED + 1 + AT_ONCE) * columns;
     let each = AT_ONCE * count * values;
     blocks(layout, slots).checked_mul(each)?.checked_add(once)?.checked_mul(LANES)?.checked_add(columns)
 }
@@ -75,7 +75,7 @@ impl<'a> Fits<'a> {
             units: arena.take_lanes(terms.fixed() * columns)?,
             solved: arena.take_fours(columns)?,
             penalties: arena.take(columns)?,
-            apart: if terms.slices > 0 { Some(Apart::new(terms, values, arena)?) } else { None },
+            apart: if terms.slices > 0 { Some(Apart::new(terms, values, call.n, arena)?) } else { None },
         };
         terms.penalties(call.config, call.basis, fits.penalties);
         Ok(fits)
