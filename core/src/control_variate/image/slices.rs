@@ -16,7 +16,9 @@ use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
-use crate::matrix::{at, copy, first_mut, from, halves_mut, packed_len, row, row_at, row_at_mut, row_mut, split_at};
+use crate::matrix::{
+    at, copy, diagonal, first_mut, from, halves_mut, packed_len, row, row_at, row_at_mut, row_mut, split_at,
+};
 use crate::real::Real;
 use crate::rows::{first, halves, rows, rows_mut};
 use core::ops::Range;
@@ -246,19 +248,19 @@ impl<'a> Apart<'a> {
         let (terms, values, slices) = (&batch.terms, batch.values, batch.terms.slices);
         let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(batch));
         let linear = batch.call.shape.linear() as f32;
-        let diagonal = |totals: &Sums<'_>, column: usize| {
+        let squares = |totals: &Sums<'_>, column: usize| {
             let each = (0..slices).map(|slice| at(row(totals.part(slice).gram, column), column));
             each.fold(NONE, |sum, square| plus(&sum, &square))
         };
-        let count = diagonal(&self.totals, 0);
-        // One sample less where a pixel's own is left out afterwards.
-        let left_out = if batch.call.n == 1 { 1.0 } else { 0.0 };
+        let count = squares(&self.totals, 0);
+        // Where a pixel's own sample is left out afterwards, of which there is one less.
+        let (left_out, units) = if batch.call.n == 1 { (1.0, fixed) } else { (0.0, 0) };
         let scale = scale(batch.call.config, &count.map(|count| count - left_out));
         for (j, penalty) in penalties.iter().enumerate().take(width) {
             let out = row_mut(self.border, j);
             out.iter_mut().for_each(|out| *out = NONE);
             if let Some(out) = out.last_mut() {
-                *out = terms.ridge(j, *penalty, &scale, &diagonal(&self.totals, j), &count);
+                *out = terms.ridge(j, *penalty, &scale, &squares(&self.totals, j), &count);
             }
         }
         for (i, side) in rows_mut(self.sides, width).enumerate() {
@@ -269,7 +271,7 @@ impl<'a> Apart<'a> {
         }
         for slice in 0..slices {
             let Part { gram, sides, .. } = self.totals.part(slice);
-            let (triangle, rows) = halves_mut(row_at_mut(self.blocks, len, slice), packed_len(own));
+            let (triangle, lines) = halves_mut(row_at_mut(self.blocks, len, slice), packed_len(own));
             for i in 0..own {
                 let (source, factor) = terms.source(i);
                 let line = row_mut(triangle, i);
@@ -283,7 +285,7 @@ impl<'a> Apart<'a> {
             }
             ldlt::factor_each(triangle, own);
             let solved = first_mut(self.solved, own);
-            for i in 0..width + values + fixed {
+            for i in 0..width + values + units {
                 let (sums, out) = match i.checked_sub(width) {
                     None => (row(gram, i), row_mut(self.border, i)),
                     Some(side) => (row_at(sides, terms.columns(), side), row_at_mut(self.sides, width, side)),
@@ -298,18 +300,17 @@ impl<'a> Apart<'a> {
                         [if other == i - width - values { 1.0 / slices as f32 } else { 0.0 }; LANES]
                     };
                 }
-                for (k, l) in row_at_mut(rows, own, i).iter_mut().enumerate() {
-                    let (Some((before, out)), Some((inverse, left))) =
-                        (split_at(solved, k), row(triangle, k).split_last())
-                    else {
-                        break;
-                    };
-                    *out = lanes::minus_products(*out, before, left);
-                    *l = product(out, inverse);
+                ldlt::forward_each::<f32, 1>(triangle, 0, ldlt::one_each_mut(solved));
+                for (k, (l, z)) in row_at_mut(lines, own, i).iter_mut().zip(&*solved).enumerate() {
+                    *l = product(z, &diagonal(triangle, k));
                 }
                 // What the block leaves.
-                for (c, out) in out.iter_mut().enumerate() {
-                    *out = lanes::minus_products(plus(out, &at(sums, c)), solved, row_at(rows, own, c));
+                for (out, sum) in out.iter_mut().zip(sums) {
+                    *out = plus(out, sum);
+                    lanes::keep_together();
+                }
+                for (out, line) in out.iter_mut().zip(rows(lines, own)) {
+                    *out = lanes::minus_products(*out, solved, line);
                 }
             }
         }
