@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import concurrent.futures
 from typing import Any, NamedTuple
 
 import numpy
@@ -114,6 +115,7 @@ def image_estimate(
     channels: bool = False,
     window: int = 8,
     stride: int | None = None,
+    threads: int = 1,
 ) -> Estimate:
     """Estimates every pixel of an image, by fits that neighbouring pixels share. One sample in each pixel is enough.
 
@@ -131,6 +133,7 @@ def image_estimate(
         stratified: whether each pixel's points are, `Sampler`'s say.
         window: width and height of the windows that share a fit, 1 to 32 pixels.
         stride: pixels from one window to the next; None: half of a window.
+        threads: how many share the rows of pixels; the result has the same bits.
 
     Returns:
         An `Estimate`, of shape (height, width), with `channels` of (height, width, c); frames as u.
@@ -174,18 +177,36 @@ def image_estimate(
             give(place, name, checked(name, array), shape)
     if (known is None) != (known_integrals is None):
         raise ValueError("known and known_integrals belong together: one of them is None")
-    out = numpy.empty(pixels, _c.ESTIMATE)
-    workspace = _c.workspace(_c.cv_image_workspace_size(_c.address(config), _c.address(image), _c.address(samples)))
-    status = _c.cv_image_estimate(
-        _c.address(config),
-        _c.address(image),
-        _c.address(samples),
-        _c.data(workspace),
-        workspace.nbytes,
-        _c.data(out),
-    )
-    if status:
-        _refuse(status, *given, config)
+
+    def rows(wanted):
+        """The status, and what the library writes for rows of pixels."""
+        part = _c.Image.from_buffer_copy(image)
+        part.wanted = _c.Rectangle(0, wanted.start, image.width, len(wanted))
+        workspace = _c.workspace(_c.cv_image_workspace_size(_c.address(config), _c.address(part), _c.address(samples)))
+        out = numpy.empty((*pixels[:-2], len(wanted), pixels[-1]), _c.ESTIMATE)
+        status = _c.cv_image_estimate(
+            _c.address(config),
+            _c.address(part),
+            _c.address(samples),
+            _c.data(workspace),
+            workspace.nbytes,
+            _c.data(out),
+        )
+        return status, out
+
+    # Whole windows, so that few are fitted to twice.
+    threads = _arrays.integer("threads", threads, 1, 1024)
+    each = window * -(-image.height // (window * threads))
+    wanted = [range(y, min(y + each, image.height)) for y in range(0, image.height, each)]
+    if len(wanted) == 1:
+        found = [rows(wanted[0])]
+    else:
+        with concurrent.futures.ThreadPoolExecutor(len(wanted)) as pool:
+            found = list(pool.map(rows, wanted))
+    for status, _ in found:
+        if status:
+            _refuse(status, *given, config)
+    out = numpy.concatenate([part for _, part in found], -2)
     return _result(out, channels, config.channels)
 
 

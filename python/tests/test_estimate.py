@@ -198,14 +198,14 @@ def test_images_of_channels_frames_surfaces_and_factors():
     strategies.sampled_from([numpy.float16, numpy.float32, numpy.float64]),
     strategies.booleans(),
 )
-def test_images_of_any_shape_type_and_stride(size, frames, n, dims, channels, kind, is_reversed):
+def test_images_of_any_shape_type_stride_and_number_of_threads(size, frames, n, dims, channels, kind, is_reversed):
     generator = numpy.random.default_rng(8)
     u = generator.random((*frames, *size, n, dims)).astype(kind)
     f = generator.random((*frames, *size, n) + ((channels,) if channels else ())).astype(kind)
     u, f = (u[..., ::-1, :, :], f[..., ::-1]) if is_reversed else (u, f)
-    estimate = noisefloor.image_estimate(u, f, order=1, channels=channels > 0)
+    estimate = noisefloor.image_estimate(u, f, order=1, channels=channels > 0, window=2)
     plain = (array.astype(numpy.float32, order="C") for array in (u, f))
-    again = noisefloor.image_estimate(*plain, order=1, channels=channels > 0)
+    again = noisefloor.image_estimate(*plain, order=1, channels=channels > 0, window=2, threads=n)
     assert estimate.gain.shape == (*frames, *size) and numpy.isfinite(estimate.mean).all()
     assert estimate.mean.shape == estimate.std_error.shape == f.shape[: len(frames) + 2] + f.shape[len(frames) + 3 :]
     assert all(numpy.array_equal(a, b, equal_nan=True) for a, b in zip(estimate, again))
@@ -236,6 +236,7 @@ def test_known_light_leaves_no_error():
         ({"edges": 2}, "edges is 2: it must be 0 to 1"),
         ({"window": 33}, "window is 33: it must be 1 to 32"),
         ({"stride": 9}, "stride is 9: it must be 1 to 8"),
+        ({"threads": 0}, "threads is 0: it must be 1 to 1024"),
         ({"estimator": "incremental"}, "estimator 'incremental', order 2, 2 dims"),
         ({"channels": True}, r"f has the shape \(24, 24, 1\): with this u it must be"),
     ],

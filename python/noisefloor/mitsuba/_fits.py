@@ -121,7 +121,7 @@ def kind():
                     more = dict(zip(("known", "known_integrals"), a))
             found = image_estimate(
                 u, f, surfaces=surfaces(middle).reshape(height, width), order=self.order, slices=lights,
-                stratified=True, channels=True, **more,
+                stratified=True, channels=True, threads=dr.thread_count(), **more,
             )  # fmt: skip
             return mi.TensorXf(found.mean)
 
