@@ -1,6 +1,6 @@
 //! The triangle: E. Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
 
-use super::frame::{unit, unit_square};
+use super::frame::{square, unit, unit_square};
 use glam::{Vec2, Vec3};
 
 /// Barycentric coordinates of a uniform point of any triangle: at least 0, with sum 1. The point is
@@ -27,7 +27,7 @@ pub fn uniform_triangle_pdf(vertices: [Vec3; 3]) -> f32 {
 pub fn uniform_triangle_inverse(b: Vec3) -> Vec2 {
     let (b0, b1) = (f64::from(b.x), f64::from(b.y));
     let (u0, u1) = if b0 < b1 { (2.0 * b0, b0 + b1) } else { (b0 + b1, 2.0 * b1) };
-    Vec2::new(unit(u0) as f32, unit(u1) as f32)
+    square(u0, u1)
 }
 
 /// From one vertex to another, in f64: products of short edges far from the origin would lose their digits in f32.
