@@ -166,21 +166,14 @@ fn rotate(m: &mut Matrix, vectors: &mut Matrix, p: usize, q: usize, n: usize) ->
     let sin = t * cos;
     m[p][p] -= t * off;
     m[q][q] += t * off;
-    m[p][q] = 0.0;
-    m[q][p] = 0.0;
+    (m[p][q], m[q][p]) = (0.0, 0.0);
+    let turned = |along_p: f64, along_q: f64| (cos * along_p - sin * along_q, sin * along_p + cos * along_q);
     for k in (0..n).map(|k| k % MAX_TECHNIQUES).filter(|&k| k != p && k != q) {
-        let (along_p, along_q) = (m[k][p], m[k][q]);
-        m[k][p] = cos * along_p - sin * along_q;
-        m[k][q] = sin * along_p + cos * along_q;
-        m[p][k] = m[k][p];
-        m[q][k] = m[k][q];
+        (m[k][p], m[k][q]) = turned(m[k][p], m[k][q]);
+        (m[p][k], m[q][k]) = (m[k][p], m[k][q]);
     }
-    let (row_p, row_q) = (vectors[p], vectors[q]);
-    for (out, (along_p, along_q)) in vectors[p].iter_mut().zip(row_p.iter().zip(&row_q)) {
-        *out = cos * along_p - sin * along_q;
-    }
-    for (out, (along_p, along_q)) in vectors[q].iter_mut().zip(row_p.iter().zip(&row_q)) {
-        *out = sin * along_p + cos * along_q;
+    if let Ok([row_p, row_q]) = vectors.get_disjoint_mut([p, q]) {
+        row_p.iter_mut().zip(row_q).for_each(|(p, q)| (*p, *q) = turned(*p, *q));
     }
     true
 }
