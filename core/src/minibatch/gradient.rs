@@ -7,6 +7,7 @@ use crate::Error;
 use crate::mis::linear::Vector;
 use crate::mis::{MAX_TECHNIQUES, Solver};
 use crate::real::saturate;
+use crate::rows::first_mut;
 
 /// Parameters that are worked on together: their sums and a few rows of gradients stay in the first-level cache.
 const BLOCK: usize = 512;
@@ -126,18 +127,16 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
 
         self.system = system;
         let sums = system.techniques() + 1;
-        let memory = self.memory.as_mut();
+        let memory = first_mut(self.memory.as_mut(), sums * parameters);
+        // Code for size, too, must see that these are not 0, which would panic.
+        let (of_group, of_block) = (parameters.saturating_mul(GROUP).max(1), (sums * BLOCK).max(1));
         let mut samples = batch.samples();
-        // Code for size, too, must see that this is not 0, which would panic.
-        for (group, rows) in gradient.chunks(parameters.saturating_mul(GROUP).max(1)).enumerate() {
-            let coefficients = Coefficients::new(samples.by_ref().take(GROUP), part / batch.items());
+        for (group, rows) in gradient.chunks(of_group).enumerate() {
+            let coefficients = coefficients(samples.by_ref().take(GROUP), part / batch.items());
             // The old averages fade once.
             let keep = if group == 0 { keep as f32 } else { 1.0 };
-            let mut rest = &mut *memory;
-            for (block, estimate) in estimate.chunks(BLOCK).enumerate() {
+            for (block, (averages, estimate)) in memory.chunks_mut(of_block).zip(estimate.chunks(BLOCK)).enumerate() {
                 let len = estimate.len();
-                let Some((averages, behind)) = rest.split_at_mut_checked(len * sums) else { break };
-                rest = behind;
                 fade(averages, keep);
                 let rows = rows.chunks_exact(parameters.max(1));
                 let rows = rows.filter_map(|row| row.get(block * BLOCK..)?.get(..len));
@@ -149,10 +148,7 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
                 }
             }
         }
-        let mut rest = &*memory;
-        for estimate in estimate.chunks_mut(BLOCK) {
-            let Some((averages, behind)) = rest.split_at_checked(estimate.len() * sums) else { break };
-            rest = behind;
+        for (averages, estimate) in memory.chunks(of_block).zip(estimate.chunks_mut(BLOCK)) {
             solve(averages, &correction, estimate);
         }
         Ok(())
@@ -182,19 +178,17 @@ fn check(batch: &Batch<'_>, gradient: &[f32], parameters: usize) -> Result<(), E
 
 /// What the gradients of a group of samples are multiplied by, for the balance estimate and each b: four samples at a
 /// time, those that are missing with zeros.
-struct Coefficients([[[f32; ROWS]; SUMS]; GROUP / ROWS]);
+type Coefficients = [[[f32; ROWS]; SUMS]; GROUP / ROWS];
 
-impl Coefficients {
-    fn new(samples: impl Iterator<Item = Sample>, part: f64) -> Coefficients {
-        let mut all = [[[0.0; ROWS]; SUMS]; GROUP / ROWS];
-        for (s, sample) in samples.take(GROUP).enumerate() {
-            let balance = part * sample.balance;
-            let ratios = core::iter::once(&1.0).chain(&sample.ratio);
-            let four = &mut all[s / ROWS % (GROUP / ROWS)];
-            four.iter_mut().zip(ratios).for_each(|(c, ratio)| c[s % ROWS] = (balance * ratio) as f32);
-        }
-        Coefficients(all)
+fn coefficients(samples: impl Iterator<Item = Sample>, part: f64) -> Coefficients {
+    let mut all = [[[0.0; ROWS]; SUMS]; GROUP / ROWS];
+    for (s, sample) in samples.take(GROUP).enumerate() {
+        let balance = part * sample.balance;
+        let ratios = core::iter::once(&1.0).chain(&sample.ratio);
+        let four = &mut all[s / ROWS % (GROUP / ROWS)];
+        four.iter_mut().zip(ratios).for_each(|(c, ratio)| c[s % ROWS] = (balance * ratio) as f32);
     }
+    all
 }
 
 #[inline]
@@ -209,27 +203,19 @@ fn fade(averages: &mut [f32], keep: f32) {
 /// Adds a group of samples to the averages of one block of `len` parameters.
 #[inline]
 fn add<'a>(averages: &mut [f32], len: usize, coefficients: &Coefficients, mut rows: impl Iterator<Item = &'a [f32]>) {
-    for coefficients in &coefficients.0 {
+    for coefficients in coefficients {
         let Some(first) = rows.next() else { break };
         // A missing row may be any: its coefficients are 0.
         let mut row = || rows.next().unwrap_or(first);
         let [a, b, c, d] = [first, row(), row(), row()];
         let four = (a.get(..len), b.get(..len), c.get(..len), d.get(..len));
         let (Some(a), Some(b), Some(c), Some(d)) = four else { break };
-        for (average, coefficients) in averages.chunks_exact_mut(len.max(1)).zip(coefficients) {
-            add_four(average, [a, b, c, d], coefficients);
+        for (average, [ca, cb, cc, cd]) in averages.chunks_exact_mut(len.max(1)).zip(coefficients) {
+            for (sum, ((a, b), (c, d))) in average.iter_mut().zip(a.iter().zip(b).zip(c.iter().zip(d))) {
+                // In an order that is the same on every processor.
+                *sum += (a * ca + b * cb) + (c * cc + d * cd);
+            }
         }
-    }
-}
-
-/// Adds in an order that is the same on every processor.
-#[inline]
-fn add_four(sums: &mut [f32], rows: [&[f32]; ROWS], coefficients: &[f32; ROWS]) {
-    let [a, b, c, d] = rows;
-    let [ca, cb, cc, cd] = *coefficients;
-    let rows = a.iter().zip(b).zip(c.iter().zip(d));
-    for (sum, ((a, b), (c, d))) in sums.iter_mut().zip(rows) {
-        *sum += (a * ca + b * cb) + (c * cc + d * cd);
     }
 }
 

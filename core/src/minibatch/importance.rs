@@ -98,9 +98,8 @@ pub fn nodes(gradient: &[f32], split: Split, importance: &mut [f32]) -> Result<(
     }
     importance.chunks_mut(signs).enumerate().for_each(|(group, out)| {
         let mut squares = [0.0_f64; 2];
-        let [positive, negative] = &mut squares;
         for g in gradient.iter().skip(group).step_by(groups).map(|&g| f64::from(g)) {
-            *(if split == Split::Sign && g < 0.0 { &mut *negative } else { &mut *positive }) += g * g;
+            squares[usize::from(split == Split::Sign && g < 0.0)] += g * g;
         }
         out.iter_mut().zip(squares).for_each(|(out, square)| *out = saturate(libm::sqrt(square)));
     });

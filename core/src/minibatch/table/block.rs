@@ -61,6 +61,6 @@ fn add(sums: &Row, q: &[f64; ARITY], row: usize) -> Row {
 
 /// An item taken out of the table for a while has a negative importance, which counts as 0.
 #[inline]
-fn positive(q: f32) -> f64 {
+pub(super) fn positive(q: f32) -> f64 {
     f64::from(if q > 0.0 { q } else { 0.0 })
 }

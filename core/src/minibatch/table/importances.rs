@@ -82,14 +82,10 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         // The most blocks that the sums are for, by bisection.
         let fits = |blocks| Levels::new(blocks).nodes() * CHILDREN <= sums.as_ref().len();
         let most = (importance.as_ref().len() / ARITY).min(MAX_BLOCKS);
-        let mut blocks = most;
-        if !fits(most) {
-            let mut not = most;
-            blocks = 0;
-            while not - blocks > 1 {
-                let middle = blocks + (not - blocks) / 2;
-                if fits(middle) { blocks = middle } else { not = middle }
-            }
+        let (mut blocks, mut not) = if fits(most) { (most, most) } else { (0, most) };
+        while not - blocks > 1 {
+            let middle = blocks + (not - blocks) / 2;
+            if fits(middle) { blocks = middle } else { not = middle }
         }
         if blocks * ARITY < state.items as usize {
             return Err(Error::Memory);
@@ -172,8 +168,9 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
         let item = item as usize;
         let block = self.blocks().get(item / ARITY);
         let q = at(self.importance.as_ref(), item);
-        let (begin, end) = self.span(item / ARITY);
-        mixture.probability(q, block.map_or(0.0, Portable::total), end.wrapping_sub(begin))
+        let node = self.nodes().get(item / ARITY / CHILDREN);
+        let weight = node.map_or(0, |node| tree::weight(node, item / ARITY % CHILDREN));
+        mixture.probability(q, block.map_or(0.0, Portable::total), weight)
     }
 
     /// Whether the table has these items: else [`Error::Range`].
@@ -181,11 +178,6 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     pub fn check_items(&self, index: &[u32]) -> Result<(), Error> {
         let beyond = index.iter().fold(false, |beyond, &item| beyond | (item >= self.state.items));
         if beyond { Err(Error::Range) } else { Ok(()) }
-    }
-
-    /// Where a block begins and ends among those of its node.
-    fn span(&self, block: usize) -> (i64, i64) {
-        self.nodes().get(block / CHILDREN).map_or((0, 0), |node| tree::span(node, block % CHILDREN))
     }
 
     pub(super) fn mixture(&self) -> Result<Mixture, Error> {

@@ -42,6 +42,14 @@ pub trait Kernel {
     fn prefetch<T>(_soon: &T) {}
 }
 
+/// [`Kernel::prefetch`], if there is such an element.
+#[inline]
+pub(super) fn prefetch<K: Kernel, T>(all: &[T], at: usize) {
+    if let Some(soon) = all.get(at) {
+        K::prefetch(soon);
+    }
+}
+
 /// Plain Rust.
 #[derive(Clone, Copy, Debug)]
 pub struct Portable;

@@ -1,5 +1,6 @@
 //! The two ways to an item, and what random bits make of them.
 
+use super::block::positive;
 use crate::Error;
 use core::num::NonZeroU128;
 
@@ -33,8 +34,7 @@ impl Mixture {
     #[inline]
     pub(super) fn probability(&self, q: f32, total: f64, weight: i64) -> f64 {
         let (by_weight, by_item) = self.factors(1.0);
-        let q = f64::from(if q > 0.0 { q } else { 0.0 });
-        if total > 0.0 { by_weight * weight as f64 * (q / total) + by_item } else { by_item }
+        if total > 0.0 { by_weight * weight as f64 * (positive(q) / total) + by_item } else { by_item }
     }
 
     /// What an item's weight in the tree, and what its mere existence adds to `factor` times its probability.

@@ -1,6 +1,6 @@
 //! Several tables drawn as one: each process of a data-parallel trainer owns the table of its part of the data.
 
-use super::draw::{CHUNK, check_lengths};
+use super::draw::{CHUNK, check_lengths, noise};
 use super::importances::Table;
 use super::kernel::Kernel;
 use super::mixture::Mixture;
@@ -150,7 +150,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
             return Err(Error::NoSamples);
         }
         let mixture = Mixture::of(self.sum(), self.state.items, uniform / share)?;
-        self.draw_mixture::<CHUNK>(&mixture, share * all.items as f64, rng, index, weight);
+        self.draw_mixture::<CHUNK>(&mixture, share * all.items as f64, rng, index, weight, noise);
         Ok(())
     }
 }

@@ -73,6 +73,12 @@ pub(super) fn span(node: &Node, child: usize) -> (i64, i64) {
     (begin, node[child % CHILDREN])
 }
 
+#[inline]
+pub(super) fn weight(node: &Node, child: usize) -> i64 {
+    let (begin, end) = span(node, child);
+    end.wrapping_sub(begin)
+}
+
 /// Changes a child's weight by `difference`.
 #[inline]
 pub(super) fn add(node: &mut Node, child: usize, difference: i64) {
