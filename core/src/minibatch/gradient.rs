@@ -21,11 +21,9 @@ const SUMS: usize = MAX_TECHNIQUES + 1;
 /// The f32 that [`Gradient`] needs: J + 1 per parameter. 0 if `techniques` is not in 1..=16, `parameters` is 0, or no
 /// memory could hold them.
 pub const fn gradient_len(techniques: usize, parameters: usize) -> usize {
-    if techniques == 0 || techniques > MAX_TECHNIQUES {
-        return 0;
-    }
-    match parameters.checked_mul(techniques + 1) {
-        Some(len) if len <= isize::MAX as usize / size_of::<f32>() => len,
+    let most = isize::MAX as usize / size_of::<f32>();
+    match parameters.checked_mul(techniques.saturating_add(1)) {
+        Some(len) if 0 < techniques && techniques <= MAX_TECHNIQUES && len <= most => len,
         _ => 0,
     }
 }

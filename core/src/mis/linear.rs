@@ -136,10 +136,7 @@ fn spectral(triangle: &Triangle<&mut [f64]>) -> Factor {
             break;
         }
     }
-    let mut values = Vector::default();
-    for (i, (value, row)) in values.iter_mut().zip(&m).enumerate() {
-        *value = row[i];
-    }
+    let values: Vector = core::array::from_fn(|i| m[i][i]);
     let largest = values.iter().take(n).fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let mut inverse = Vector::default();
     for (inverse, value) in inverse.iter_mut().zip(values).filter(|(_, value)| value.abs() > RANK_TOLERANCE * largest) {

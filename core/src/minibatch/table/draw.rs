@@ -1,8 +1,7 @@
 //! Drawing batches with replacement.
 
-use super::block::{ARITY, Block};
 use super::importances::Table;
-use super::kernel::{Kernel, prefetch};
+use super::kernel::{ARITY, Block, Kernel, prefetch};
 use super::mixture::{Mixture, Ways};
 use super::tree::{self, CHILDREN, Levels, Node};
 use crate::Error;

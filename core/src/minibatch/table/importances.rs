@@ -1,10 +1,10 @@
 //! The table: the memory of the importances and of their sums, and what they say.
 
-use super::block::{ARITY, Block};
-use super::kernel::{Kernel, Portable};
+use super::kernel::{ARITY, Block, Kernel, Portable};
 use super::mixture::Mixture;
 use super::tree::{self, CHILDREN, Levels, MAX_BLOCKS, Node};
 use crate::error::{Error, check_part};
+use crate::real::power_of_two;
 use crate::rows::{at, first};
 use core::marker::PhantomData;
 
@@ -249,11 +249,6 @@ pub fn check_importances(values: &[f32]) -> Result<(), Error> {
         (true, true) => Err(Error::Range),
         (true, false) => Ok(()),
     }
-}
-
-/// 2^`exponent`, which must be in -1022..=1023.
-pub(super) fn power_of_two(exponent: i64) -> f64 {
-    f64::from_bits(((exponent + 1023) as u64 & 0x7ff) << 52)
 }
 
 /// Whether a scale is a power of two that [`Table`] may have chosen.

@@ -1,6 +1,6 @@
 //! The two ways to an item, and what random bits make of them.
 
-use super::block::positive;
+use super::kernel::positive;
 use crate::Error;
 use core::num::NonZeroU128;
 

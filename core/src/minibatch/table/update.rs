@@ -1,17 +1,17 @@
 //! Changing importances.
 
-use super::block::{ARITY, Block};
-use super::importances::{Table, check_importances, power_of_two};
-use super::kernel::{Kernel, Portable, prefetch};
+use super::importances::{Table, check_importances};
+use super::kernel::{ARITY, Block, Kernel, Portable, prefetch};
 use super::tree::{self, CHILDREN, Node};
 use crate::error::{Error, check_part};
+use crate::real::power_of_two;
 use crate::rows::{first_mut, from};
 
 /// How many changes go up the tree together.
 const CHUNK: usize = 64;
 /// A scale is chosen so that the sum has this many bits: room to grow by a factor of 2^11, and to shrink by 2^6 with
 /// the most items there can be, by 2^18 with a million.
-const BITS: i64 = 51;
+const BITS: i32 = 51;
 /// The sum stays below this.
 const LARGEST_SUM: i64 = 1 << 62;
 /// The sum stays above this times the number of blocks, so that rounding a block's weight changes little.
@@ -171,7 +171,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
         let sum: f64 = self.blocks().iter().take(self.used()).map(Portable::total).sum();
         if sum > 0.0 {
             // Between 2^-149 and 2^160: the exponent of a normal f64.
-            let exponent = (sum.to_bits() >> 52) as i64 - 1023;
+            let exponent = (sum.to_bits() >> 52) as i32 - 1023;
             self.state.scale = power_of_two(BITS - 1 - exponent);
         }
         self.build::<Portable>();
