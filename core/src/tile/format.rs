@@ -48,14 +48,10 @@ impl Header {
     /// [`Error::Range`] for a shape or text outside these limits.
     pub fn new(shape: Shape, seed: u64, kernel: &str) -> Result<Header, Error> {
         let mut text = [0; KERNEL_BYTES];
-        let place = text.get_mut(..kernel.len()).ok_or(Error::Range)?;
-        place.iter_mut().zip(kernel.bytes()).for_each(|(to, from)| *to = from);
+        text.iter_mut().zip(kernel.bytes()).for_each(|(to, from)| *to = from);
         let header = Header { shape, seed, kernel: text };
-        if shape.is_valid() && header.text_is_valid() && !kernel.contains('\0') {
-            Ok(header)
-        } else {
-            Err(Error::Range)
-        }
+        let is_whole = kernel.len() <= KERNEL_BYTES && !kernel.contains('\0');
+        if shape.is_valid() && header.text_is_valid() && is_whole { Ok(header) } else { Err(Error::Range) }
     }
 
     /// How many values, and how they are stored.
