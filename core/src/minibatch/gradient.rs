@@ -75,7 +75,7 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
     ///
     /// Errors: as for [`Gradient::new`].
     pub fn resume(memory: M, system: System, parameters: usize) -> Result<Self, Error> {
-        match gradient_len(system.techniques(), parameters) {
+        match gradient_len(system.techniques, parameters) {
             0 => Err(Error::Range),
             needed if memory.as_ref().len() < needed => Err(Error::Memory),
             _ => Ok(Gradient { system, parameters, memory }),
@@ -89,7 +89,7 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
 
     /// Forgets every batch.
     pub fn reset(&mut self) {
-        self.system = System::new(self.system.techniques());
+        self.system = System::new(self.system.techniques);
         self.memory.as_mut().fill(0.0);
     }
 
@@ -124,13 +124,13 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
         check(batch, gradient, parameters)?;
 
         self.system = system;
-        let sums = system.techniques() + 1;
+        let sums = system.techniques + 1;
         let memory = first_mut(self.memory.as_mut(), sums * parameters);
         // Code for size, too, must see that these are not 0, which would panic.
         let (of_group, of_block) = (parameters.saturating_mul(GROUP).max(1), (sums * BLOCK).max(1));
         let mut samples = batch.samples();
         for (group, rows) in gradient.chunks(of_group).enumerate() {
-            let coefficients = coefficients(samples.by_ref().take(GROUP), part / batch.items());
+            let coefficients = coefficients(samples.by_ref().take(GROUP), part / batch.items);
             // The old averages fade once.
             let keep = if group == 0 { keep as f32 } else { 1.0 };
             for (block, (averages, estimate)) in memory.chunks_mut(of_block).zip(estimate.chunks(BLOCK)).enumerate() {
@@ -166,7 +166,7 @@ fn check(batch: &Batch<'_>, gradient: &[f32], parameters: usize) -> Result<(), E
             return Err(Error::NotFinite);
         }
         // The largest coefficient: p_j / S is at most 1.
-        let coefficient = sample.balance / batch.items();
+        let coefficient = sample.balance / batch.items;
         overflow |= coefficient > f64::from(f32::MAX);
         bound += coefficient * f64::from(largest);
     }

@@ -4,6 +4,7 @@ use super::solver::Solver;
 use crate::linalg::ldlt::Ldlt;
 use crate::matrix::{Triangle, copy, first_mut, packed_len};
 use crate::rows::first;
+use core::array::from_fn;
 
 /// The most techniques that one call combines.
 pub const MAX_TECHNIQUES: usize = 16;
@@ -113,17 +114,8 @@ fn each_product(cells: &mut [f64], x: &[f64], change: impl Fn(&mut f64, f64)) {
 /// By Jacobi rotations. It solves in the least-squares sense of least norm: the pseudo-inverse.
 fn spectral(triangle: &Triangle<&mut [f64]>) -> Factor {
     let n = triangle.order().min(MAX_TECHNIQUES);
-    let mut m = Matrix::default();
-    for (j, row) in triangle.rows().enumerate() {
-        for (k, &value) in row.iter().enumerate() {
-            let (j, k) = (j % MAX_TECHNIQUES, k % MAX_TECHNIQUES);
-            (m[j][k], m[k][j]) = (value, value);
-        }
-    }
-    let mut vectors = Matrix::default();
-    for (i, row) in vectors.iter_mut().enumerate() {
-        row[i] = 1.0;
-    }
+    let mut m: Matrix = from_fn(|j| from_fn(|k| triangle.at(j.max(k), j.min(k))));
+    let mut vectors: Matrix = from_fn(|j| from_fn(|k| if j == k { 1.0 } else { 0.0 }));
     // Convergence is quadratic: 16 unknowns need about 8 sweeps.
     for _ in 0..30 {
         let mut rotated = false;
@@ -136,7 +128,7 @@ fn spectral(triangle: &Triangle<&mut [f64]>) -> Factor {
             break;
         }
     }
-    let values: Vector = core::array::from_fn(|i| m[i][i]);
+    let values: Vector = from_fn(|i| m[i][i]);
     let largest = values.iter().take(n).fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let mut inverse = Vector::default();
     for (inverse, value) in inverse.iter_mut().zip(values).filter(|(_, value)| value.abs() > RANK_TOLERANCE * largest) {

@@ -237,10 +237,8 @@ const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
 /// Errors: [`Error::Range`] unless there are as many weights as indices, or none at all.
 pub(super) fn check_lengths(index: &[u32], weight: &Option<&mut [f32]>) -> Result<(), Error> {
-    match weight {
-        Some(weight) if weight.len() != index.len() => Err(Error::Range),
-        _ => Ok(()),
-    }
+    let differ = weight.as_ref().is_some_and(|weight| weight.len() != index.len());
+    if differ { Err(Error::Range) } else { Ok(()) }
 }
 
 /// The bits of draw `k`: draws need no order.

@@ -34,6 +34,16 @@ pub struct State {
     pub uniform_fraction: f32,
 }
 
+impl State {
+    /// Whether a table may have it.
+    pub(super) fn is_valid(&self) -> bool {
+        (power_of_two(-300)..=power_of_two(300)).contains(&self.scale)
+            && self.scale.to_bits() << 12 == 0
+            && self.items > 0
+            && (0.0..=1.0).contains(&self.uniform_fraction)
+    }
+}
+
 /// Importances of the items of a data set, from which batches are drawn.
 ///
 /// Item i is drawn with probability `p_i = (1 - d) q_i / sum q + d / N`, d being the uniform fraction: every weight
@@ -76,7 +86,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// contents are not checked: if they are not what that table left there, draws are still of items that exist, but
     /// not as often as they should be, and weights are any numbers.
     pub fn resume(importance: I, sums: S, state: State) -> Result<Self, Error> {
-        if state.items == 0 || !is_scale(state.scale) || !(0.0..=1.0).contains(&state.uniform_fraction) {
+        if !state.is_valid() {
             return Err(Error::Range);
         }
         // The most blocks that the sums are for, by bisection.
@@ -249,9 +259,4 @@ pub fn check_importances(values: &[f32]) -> Result<(), Error> {
         (true, true) => Err(Error::Range),
         (true, false) => Ok(()),
     }
-}
-
-/// Whether a scale is a power of two that [`Table`] may have chosen.
-pub(super) fn is_scale(scale: f64) -> bool {
-    (power_of_two(-300)..=power_of_two(300)).contains(&scale) && scale.to_bits() << 12 == 0
 }

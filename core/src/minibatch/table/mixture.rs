@@ -23,11 +23,8 @@ impl Mixture {
 
     /// Errors: [`Error::NoSamples`] if every weight is 0 and no draw uniform.
     pub(super) fn of(sum: i64, items: u32, uniform: f64) -> Result<Mixture, Error> {
-        match (sum > 0, uniform > 0.0) {
-            (true, _) => Ok(Mixture { sum, items, tree: 1.0 - uniform, uniform }),
-            (false, true) => Ok(Mixture::uniform(items)),
-            (false, false) => Err(Error::NoSamples),
-        }
+        let (tree, uniform) = parts(sum > 0, uniform)?;
+        Ok(Mixture { sum, items, tree, uniform })
     }
 
     /// The probability of an item of importance `q` in a block of sum `total` that weighs `weight`.
@@ -52,6 +49,17 @@ impl Mixture {
                 Scale::new(0, uniform, u64::from(self.items)),
             ],
         }
+    }
+}
+
+/// The probability of each way: by importance, if there is any, and uniformly.
+///
+/// Errors: [`Error::NoSamples`] if there is neither.
+pub(super) fn parts(is_any_important: bool, uniform: f64) -> Result<(f64, f64), Error> {
+    match (is_any_important, uniform > 0.0) {
+        (true, _) => Ok((1.0 - uniform, uniform)),
+        (false, true) => Ok((0.0, 1.0)),
+        (false, false) => Err(Error::NoSamples),
     }
 }
 

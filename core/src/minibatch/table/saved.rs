@@ -3,7 +3,7 @@
 //! Little-endian: the magic "nf_table", version u32, items u32, scale f64, uniform fraction f32, CRC-32 of all other
 //! bytes u32, and an f32 for each item. The sums are made again: they are the same.
 
-use super::importances::{State, Table, is_scale};
+use super::importances::{State, Table};
 use super::kernel::{Kernel, Portable};
 use crate::Error;
 use crate::checksum::crc;
@@ -84,13 +84,11 @@ fn check(bytes: &[u8]) -> Result<State, Error> {
         return Err(Error::Length);
     }
     let (scale, uniform_fraction) = (f64::from_le_bytes(field(bytes, 16)?), f32::from_le_bytes(field(bytes, 24)?));
-    let stored = u32::from_le_bytes(field(bytes, CHECKSUM)?);
-    let sound = stored == checksum(bytes)
-        && items > 0
-        && is_scale(scale)
-        && (0.0..=1.0).contains(&uniform_fraction)
+    let state = State { scale, items, uniform_fraction };
+    let sound = u32::from_le_bytes(field(bytes, CHECKSUM)?) == checksum(bytes)
+        && state.is_valid()
         && values(bytes).all(|q| q.is_finite() && q.is_sign_positive());
-    if sound { Ok(State { scale, items, uniform_fraction }) } else { Err(Error::Corrupt) }
+    if sound { Ok(state) } else { Err(Error::Corrupt) }
 }
 
 fn values(bytes: &[u8]) -> impl Iterator<Item = f32> {
