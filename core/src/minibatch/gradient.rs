@@ -7,7 +7,6 @@ use crate::Error;
 use crate::mis::linear::Vector;
 use crate::mis::{MAX_TECHNIQUES, Solver};
 use crate::real::saturate;
-use crate::rows::first_mut;
 
 /// Parameters that are worked on together: their sums and a few rows of gradients stay in the first-level cache.
 const BLOCK: usize = 512;
@@ -125,16 +124,17 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
 
         self.system = system;
         let sums = system.techniques + 1;
-        let memory = first_mut(self.memory.as_mut(), sums * parameters);
-        // Code for size, too, must see that these are not 0, which would panic.
-        let (of_group, of_block) = (parameters.saturating_mul(GROUP).max(1), (sums * BLOCK).max(1));
+        let memory = self.memory.as_mut();
         let mut samples = batch.samples();
-        for (group, rows) in gradient.chunks(of_group).enumerate() {
+        // Code for size, too, must see that this is not 0, which would panic.
+        for (group, rows) in gradient.chunks(parameters.saturating_mul(GROUP).max(1)).enumerate() {
             let coefficients = coefficients(samples.by_ref().take(GROUP), part / batch.items);
             // The old averages fade once.
             let keep = if group == 0 { keep as f32 } else { 1.0 };
-            for (block, (averages, estimate)) in memory.chunks_mut(of_block).zip(estimate.chunks(BLOCK)).enumerate() {
+            let mut rest = &mut *memory;
+            for (block, estimate) in estimate.chunks(BLOCK).enumerate() {
                 let len = estimate.len();
+                let Some(averages) = rest.split_off_mut(..len * sums) else { break };
                 fade(averages, keep);
                 let rows = rows.chunks_exact(parameters.max(1));
                 let rows = rows.filter_map(|row| row.get(block * BLOCK..)?.get(..len));
@@ -146,7 +146,9 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
                 }
             }
         }
-        for (averages, estimate) in memory.chunks(of_block).zip(estimate.chunks_mut(BLOCK)) {
+        let mut rest = &*memory;
+        for estimate in estimate.chunks_mut(BLOCK) {
+            let Some(averages) = rest.split_off(..estimate.len() * sums) else { break };
             solve(averages, &correction, estimate);
         }
         Ok(())
