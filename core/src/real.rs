@@ -137,9 +137,13 @@ real! { f32, true, sqrtf expf cosf fabsf frexpf;
     fn ln(self) -> Self { libm::log(f64::from(self)) as f32 }
     // Rounded once, by the last cast. scalbnf multiplies in steps, and a compiler may take one more than there are.
     fn scale(self, exponent: i32) -> Self {
-        let power = f64::from_bits(((exponent.clamp(-1022, 1023) + 1023) as u64) << 52);
-        (f64::from(self) * power) as f32
+        (f64::from(self) * power_of_two(exponent)) as f32
     }
+}
+
+/// 2 to the power of `exponent`, or of what is nearest to it in -1022..=1023.
+pub(crate) fn power_of_two(exponent: i32) -> f64 {
+    f64::from_bits(((exponent.clamp(-1022, 1023) + 1023) as u64) << 52)
 }
 
 /// The nearest finite `f32`.

@@ -101,19 +101,19 @@ pub fn recommend(
     if dims == 0 || samples_per_pixel == 0 || sample_cost <= 0.0 {
         return Err(Error::Range);
     }
-    let table = match (sampling, can_share) {
-        (Sampling::Independent, false) => &INDEPENDENT_ALONE,
-        (Sampling::Independent, true) => &INDEPENDENT_SHARED,
-        (Sampling::Stratified, false) => &STRATIFIED_ALONE,
-        (Sampling::Stratified, true) => &STRATIFIED_SHARED,
-    };
-    let best = cell(table, dims, samples_per_pixel);
-    let (_, pays_from) = best.time(sampling, samples_per_pixel);
-    let is_too_dear = best.method != Method::PlainMean && sample_cost < pays_from;
-    let mean = match sampling {
-        Sampling::Independent => plain(1.0, 1.0),
+    let (error, filtered_error) = match sampling {
+        Sampling::Independent => (1.0, 1.0),
         Sampling::Stratified => cell(&STRATIFIED_ALONE, dims, samples_per_pixel),
     };
+    let mean = plain(error, filtered_error);
+    let best = match (sampling, can_share) {
+        (Sampling::Independent, false) => cell(&INDEPENDENT_ALONE, dims, samples_per_pixel),
+        (Sampling::Independent, true) => cell(&INDEPENDENT_SHARED, dims, samples_per_pixel),
+        (Sampling::Stratified, false) => mean,
+        (Sampling::Stratified, true) => cell(&STRATIFIED_SHARED, dims, samples_per_pixel),
+    };
+    let (_, pays_from) = best.time(sampling, samples_per_pixel);
+    let is_too_dear = best.method != Method::PlainMean && sample_cost < pays_from;
     let chosen = if is_too_dear { mean } else { best };
     let (cost, _) = chosen.time(sampling, samples_per_pixel);
     let Cell { method, order, image_stride, error, filtered_error, .. } = chosen;
@@ -164,7 +164,7 @@ struct Cell {
 }
 
 const fn plain(error: f32, filtered_error: f32) -> Cell {
-    Cell { method: Method::PlainMean, order: 0, image_stride: 8, cost: 0.0, error, filtered_error }
+    Cell { method: Method::PlainMean, ..pixel(0, 0, error, filtered_error) }
 }
 
 const fn pixel(order: usize, cost: u16, error: f32, filtered_error: f32) -> Cell {
@@ -173,12 +173,12 @@ const fn pixel(order: usize, cost: u16, error: f32, filtered_error: f32) -> Cell
 
 /// Windows of 8 x 8 pixels, one beside the other.
 const fn blocks(order: usize, cost: u16, error: f32, filtered_error: f32) -> Cell {
-    Cell { method: Method::Shared, order, image_stride: 8, cost: cost as f32, error, filtered_error }
+    Cell { method: Method::Shared, ..pixel(order, cost, error, filtered_error) }
 }
 
 /// Windows that overlap by half.
 const fn windows(order: usize, cost: u16, error: f32, filtered_error: f32) -> Cell {
-    Cell { method: Method::Shared, order, image_stride: 4, cost: cost as f32, error, filtered_error }
+    Cell { image_stride: 4, ..blocks(order, cost, error, filtered_error) }
 }
 
 impl Cell {
@@ -242,23 +242,16 @@ const INDEPENDENT_SHARED: Table<Cell> = [
      blocks(1, 92, 0.54, 0.56),     pixel(1, 133, 0.47, 0.33)],
 ];
 
-/// Stratified samples of one pixel: leave-one-out errors do not see strata, and a fit may be many times worse.
-/// From 64 samples on the figures, here and below, are those of Sobol points scrambled in each pixel;
-/// for 5 and 8 dims and 1 sample, of the tile of 2 dims.
-#[rustfmt::skip]
-const STRATIFIED_ALONE: Table<Cell> = [
-    [plain(0.99, 0.039),            plain(0.17, 0.011),            plain(0.042, 0.0035),
-     plain(0.0017, 0.0024),         plain(0.00018, 0.00027)],
-    [plain(0.99, 0.045),            plain(0.2, 0.011),             plain(0.052, 0.0035),
-     plain(0.009, 0.012),           plain(0.0016, 0.0022)],
-    [plain(0.99, 0.08),             plain(0.36, 0.026),            plain(0.15, 0.085),
-     plain(0.028, 0.035),           plain(0.011, 0.014)],
-    [plain(0.98, 0.2),              plain(0.3, 0.14),              plain(0.15, 0.094),
-     plain(0.072, 0.097),           plain(0.046, 0.065)],
-    [plain(1.0, 0.24),              plain(0.33, 0.17),             plain(0.2, 0.14),
-     plain(0.14, 0.17),             plain(0.1, 0.12)],
-    [plain(1.0, 0.28),              plain(0.35, 0.19),             plain(0.23, 0.14),
-     plain(0.2, 0.2),               plain(0.16, 0.13)],
+/// The plain mean of stratified samples of one pixel: leave-one-out errors do not see strata, and a fit may be many
+/// times worse. From 64 samples on the figures, here and below, are those of Sobol points scrambled in each pixel; for
+/// 5 and 8 dims and 1 sample, of the tile of 2 dims.
+const STRATIFIED_ALONE: Table<(f32, f32)> = [
+    [(0.99, 0.039), (0.17, 0.011), (0.042, 0.0035), (0.0017, 0.0024), (0.00018, 0.00027)],
+    [(0.99, 0.045), (0.2, 0.011), (0.052, 0.0035), (0.009, 0.012), (0.0016, 0.0022)],
+    [(0.99, 0.08), (0.36, 0.026), (0.15, 0.085), (0.028, 0.035), (0.011, 0.014)],
+    [(0.98, 0.2), (0.3, 0.14), (0.15, 0.094), (0.072, 0.097), (0.046, 0.065)],
+    [(1.0, 0.24), (0.33, 0.17), (0.2, 0.14), (0.14, 0.17), (0.1, 0.12)],
+    [(1.0, 0.28), (0.35, 0.19), (0.23, 0.14), (0.2, 0.2), (0.16, 0.13)],
 ];
 
 /// Stratified samples of an image.

@@ -64,7 +64,7 @@ impl Rng {
     /// Uniform in [0, 1): a multiple of 2^-24, from one output.
     #[inline]
     pub const fn uniform_f32(&mut self) -> f32 {
-        (self.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
+        unit(self.next_u32())
     }
 
     /// Uniform in [0, 1): a multiple of 2^-53, from two outputs.
@@ -122,6 +122,12 @@ impl SeedableRng for Rng {
     fn seed_from_u64(seed: u64) -> Rng {
         Rng::seed(seed)
     }
+}
+
+/// 32-bit fixed point as a float: the upper 24 bits, so always below 1.
+#[inline]
+pub(crate) const fn unit(fixed: u32) -> f32 {
+    (fixed >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
 const fn step(state: u64, increment: u64) -> u64 {

@@ -16,10 +16,10 @@ use crate::mis::linear::Vector;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Batch<'a> {
-    items: f64,
+    pub(super) items: f64,
     techniques: usize,
     /// n_j, counted from `technique`.
-    counts: Vector,
+    pub(super) counts: Vector,
     pdf: &'a [f32],
     technique: &'a [u32],
 }
@@ -76,14 +76,6 @@ impl<'a> Batch<'a> {
     /// The number of techniques J.
     pub fn techniques(&self) -> usize {
         self.techniques
-    }
-
-    pub(super) fn items(&self) -> f64 {
-        self.items
-    }
-
-    pub(super) fn counts(&self) -> &Vector {
-        &self.counts
     }
 
     pub(super) fn samples(&self) -> impl Iterator<Item = Sample> {

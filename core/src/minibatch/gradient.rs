@@ -20,11 +20,9 @@ const SUMS: usize = MAX_TECHNIQUES + 1;
 /// The f32 that [`Gradient`] needs: J + 1 per parameter. 0 if `techniques` is not in 1..=16, `parameters` is 0, or no
 /// memory could hold them.
 pub const fn gradient_len(techniques: usize, parameters: usize) -> usize {
-    if techniques == 0 || techniques > MAX_TECHNIQUES {
-        return 0;
-    }
-    match parameters.checked_mul(techniques + 1) {
-        Some(len) if len <= isize::MAX as usize / size_of::<f32>() => len,
+    let most = isize::MAX as usize / size_of::<f32>();
+    match parameters.checked_mul(techniques.saturating_add(1)) {
+        Some(len) if 0 < techniques && techniques <= MAX_TECHNIQUES && len <= most => len,
         _ => 0,
     }
 }
@@ -76,7 +74,7 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
     ///
     /// Errors: as for [`Gradient::new`].
     pub fn resume(memory: M, system: System, parameters: usize) -> Result<Self, Error> {
-        match gradient_len(system.techniques(), parameters) {
+        match gradient_len(system.techniques, parameters) {
             0 => Err(Error::Range),
             needed if memory.as_ref().len() < needed => Err(Error::Memory),
             _ => Ok(Gradient { system, parameters, memory }),
@@ -90,7 +88,7 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
 
     /// Forgets every batch.
     pub fn reset(&mut self) {
-        self.system = System::new(self.system.techniques());
+        self.system = System::new(self.system.techniques);
         self.memory.as_mut().fill(0.0);
     }
 
@@ -125,19 +123,18 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
         check(batch, gradient, parameters)?;
 
         self.system = system;
-        let sums = system.techniques() + 1;
+        let sums = system.techniques + 1;
         let memory = self.memory.as_mut();
         let mut samples = batch.samples();
         // Code for size, too, must see that this is not 0, which would panic.
         for (group, rows) in gradient.chunks(parameters.saturating_mul(GROUP).max(1)).enumerate() {
-            let coefficients = Coefficients::new(samples.by_ref().take(GROUP), part / batch.items());
+            let coefficients = coefficients(samples.by_ref().take(GROUP), part / batch.items);
             // The old averages fade once.
             let keep = if group == 0 { keep as f32 } else { 1.0 };
             let mut rest = &mut *memory;
             for (block, estimate) in estimate.chunks(BLOCK).enumerate() {
                 let len = estimate.len();
-                let Some((averages, behind)) = rest.split_at_mut_checked(len * sums) else { break };
-                rest = behind;
+                let Some(averages) = rest.split_off_mut(..len * sums) else { break };
                 fade(averages, keep);
                 let rows = rows.chunks_exact(parameters.max(1));
                 let rows = rows.filter_map(|row| row.get(block * BLOCK..)?.get(..len));
@@ -151,8 +148,7 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
         }
         let mut rest = &*memory;
         for estimate in estimate.chunks_mut(BLOCK) {
-            let Some((averages, behind)) = rest.split_at_checked(estimate.len() * sums) else { break };
-            rest = behind;
+            let Some(averages) = rest.split_off(..estimate.len() * sums) else { break };
             solve(averages, &correction, estimate);
         }
         Ok(())
@@ -172,7 +168,7 @@ fn check(batch: &Batch<'_>, gradient: &[f32], parameters: usize) -> Result<(), E
             return Err(Error::NotFinite);
         }
         // The largest coefficient: p_j / S is at most 1.
-        let coefficient = sample.balance / batch.items();
+        let coefficient = sample.balance / batch.items;
         overflow |= coefficient > f64::from(f32::MAX);
         bound += coefficient * f64::from(largest);
     }
@@ -182,19 +178,17 @@ fn check(batch: &Batch<'_>, gradient: &[f32], parameters: usize) -> Result<(), E
 
 /// What the gradients of a group of samples are multiplied by, for the balance estimate and each b: four samples at a
 /// time, those that are missing with zeros.
-struct Coefficients([[[f32; ROWS]; SUMS]; GROUP / ROWS]);
+type Coefficients = [[[f32; ROWS]; SUMS]; GROUP / ROWS];
 
-impl Coefficients {
-    fn new(samples: impl Iterator<Item = Sample>, part: f64) -> Coefficients {
-        let mut all = [[[0.0; ROWS]; SUMS]; GROUP / ROWS];
-        for (s, sample) in samples.take(GROUP).enumerate() {
-            let balance = part * sample.balance;
-            let ratios = core::iter::once(&1.0).chain(&sample.ratio);
-            let four = &mut all[s / ROWS % (GROUP / ROWS)];
-            four.iter_mut().zip(ratios).for_each(|(c, ratio)| c[s % ROWS] = (balance * ratio) as f32);
-        }
-        Coefficients(all)
+fn coefficients(samples: impl Iterator<Item = Sample>, part: f64) -> Coefficients {
+    let mut all = [[[0.0; ROWS]; SUMS]; GROUP / ROWS];
+    for (s, sample) in samples.take(GROUP).enumerate() {
+        let balance = part * sample.balance;
+        let ratios = core::iter::once(&1.0).chain(&sample.ratio);
+        let four = &mut all[s / ROWS % (GROUP / ROWS)];
+        four.iter_mut().zip(ratios).for_each(|(c, ratio)| c[s % ROWS] = (balance * ratio) as f32);
     }
+    all
 }
 
 #[inline]
@@ -209,27 +203,19 @@ fn fade(averages: &mut [f32], keep: f32) {
 /// Adds a group of samples to the averages of one block of `len` parameters.
 #[inline]
 fn add<'a>(averages: &mut [f32], len: usize, coefficients: &Coefficients, mut rows: impl Iterator<Item = &'a [f32]>) {
-    for coefficients in &coefficients.0 {
+    for coefficients in coefficients {
         let Some(first) = rows.next() else { break };
         // A missing row may be any: its coefficients are 0.
         let mut row = || rows.next().unwrap_or(first);
         let [a, b, c, d] = [first, row(), row(), row()];
         let four = (a.get(..len), b.get(..len), c.get(..len), d.get(..len));
         let (Some(a), Some(b), Some(c), Some(d)) = four else { break };
-        for (average, coefficients) in averages.chunks_exact_mut(len.max(1)).zip(coefficients) {
-            add_four(average, [a, b, c, d], coefficients);
+        for (average, [ca, cb, cc, cd]) in averages.chunks_exact_mut(len.max(1)).zip(coefficients) {
+            for (sum, ((a, b), (c, d))) in average.iter_mut().zip(a.iter().zip(b).zip(c.iter().zip(d))) {
+                // In an order that is the same on every processor.
+                *sum += (a * ca + b * cb) + (c * cc + d * cd);
+            }
         }
-    }
-}
-
-/// Adds in an order that is the same on every processor.
-#[inline]
-fn add_four(sums: &mut [f32], rows: [&[f32]; ROWS], coefficients: &[f32; ROWS]) {
-    let [a, b, c, d] = rows;
-    let [ca, cb, cc, cd] = *coefficients;
-    let rows = a.iter().zip(b).zip(c.iter().zip(d));
-    for (sum, ((a, b), (c, d))) in sums.iter_mut().zip(rows) {
-        *sum += (a * ca + b * cb) + (c * cc + d * cd);
     }
 }
 

@@ -19,19 +19,14 @@ use crate::real::saturate;
 /// assert!(cross_entropy(&[9.0, 0.0], 0) < 0.001); // already learnt
 /// ```
 pub fn cross_entropy(logits: &[f32], label: usize) -> f32 {
-    match Softmax::new(logits, label) {
-        Some(s) => saturate(libm::sqrt(s.others_squared + s.others * s.others) / s.sum),
-        None => f32::NAN,
-    }
+    Softmax::new(logits, label)
+        .map_or(f32::NAN, |s| saturate(libm::sqrt(s.others_squared + s.others * s.others) / s.sum))
 }
 
 /// The cross-entropy loss `-ln softmax(logits)[label]`, at least 0.
 pub fn cross_entropy_loss(logits: &[f32], label: usize) -> f32 {
-    match Softmax::new(logits, label) {
-        // ln sum exp(z) - z_label, where the largest exp is 1: log1p of the others keeps a loss near 0 accurate.
-        Some(s) => saturate(libm::log1p(s.not_largest) - s.label),
-        None => f32::NAN,
-    }
+    // ln sum exp(z) - z_label, where the largest exp is 1: log1p of the others keeps a loss near 0 accurate.
+    Softmax::new(logits, label).map_or(f32::NAN, |s| saturate(libm::log1p(s.not_largest) - s.label))
 }
 
 /// The derivative of the cross-entropy loss by the logits, `softmax(logits) - onehot(label)` (6.10).
@@ -98,9 +93,8 @@ pub fn nodes(gradient: &[f32], split: Split, importance: &mut [f32]) -> Result<(
     }
     importance.chunks_mut(signs).enumerate().for_each(|(group, out)| {
         let mut squares = [0.0_f64; 2];
-        let [positive, negative] = &mut squares;
         for g in gradient.iter().skip(group).step_by(groups).map(|&g| f64::from(g)) {
-            *(if split == Split::Sign && g < 0.0 { &mut *negative } else { &mut *positive }) += g * g;
+            squares[usize::from(split == Split::Sign && g < 0.0)] += g * g;
         }
         out.iter_mut().zip(squares).for_each(|(out, square)| *out = saturate(libm::sqrt(square)));
     });

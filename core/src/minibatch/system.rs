@@ -22,7 +22,7 @@ use crate::rows::first;
 /// Averages of A, q - 1 and the counts over the batches so far, newer ones counting for more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct System {
-    techniques: usize,
+    pub(super) techniques: usize,
     /// The sum of the weights that the batches have: 1 for the newest, beta times as much for each one before.
     weight: f64,
     counts: Vector,
@@ -44,10 +44,6 @@ impl System {
         }
     }
 
-    pub(super) fn techniques(&self) -> usize {
-        self.techniques
-    }
-
     /// Multiplies the weights of the earlier batches by `beta` in 0..=1 and adds `batch`. Returned are the parts that
     /// the old averages and the batch have in the new ones, which sum to 1.
     pub(super) fn add(&mut self, batch: &Batch<'_>, beta: f32) -> Result<(f64, f64), Error> {
@@ -59,7 +55,7 @@ impl System {
         self.weight = earlier + 1.0;
         let (keep, part) = (earlier / self.weight, 1.0 / self.weight);
         self.error.iter_mut().chain(&mut self.counts).chain(&mut self.cells).for_each(|average| *average *= keep);
-        for (j, &count) in batch.counts().iter().enumerate() {
+        for (j, &count) in batch.counts.iter().enumerate() {
             self.counts[j] += part * count;
             if count > 0.0 {
                 self.error[j] -= part;

@@ -43,7 +43,7 @@ pub fn weights(batch: &Batch<'_>, solver: Solver, weight: &mut [f32]) -> Result<
     let mut system = System::new(batch.techniques());
     system.add(batch, 0.0)?;
     let correction = system.correction(solver)?;
-    let scale = batch.len() as f64 / batch.items();
+    let scale = batch.len() as f64 / batch.items;
     for (weight, sample) in weight.iter_mut().zip(batch.samples()) {
         let control: f64 = correction.iter().zip(&sample.ratio).map(|(c, ratio)| c * ratio).sum();
         *weight = saturate((1.0 - control) * sample.balance * scale);

@@ -4,6 +4,7 @@ use super::solver::Solver;
 use crate::linalg::ldlt::Ldlt;
 use crate::matrix::{Triangle, copy, first_mut, packed_len};
 use crate::rows::first;
+use core::array::from_fn;
 
 /// The most techniques that one call combines.
 pub const MAX_TECHNIQUES: usize = 16;
@@ -113,17 +114,8 @@ fn each_product(cells: &mut [f64], x: &[f64], change: impl Fn(&mut f64, f64)) {
 /// By Jacobi rotations. It solves in the least-squares sense of least norm: the pseudo-inverse.
 fn spectral(triangle: &Triangle<&mut [f64]>) -> Factor {
     let n = triangle.order().min(MAX_TECHNIQUES);
-    let mut m = Matrix::default();
-    for (j, row) in triangle.rows().enumerate() {
-        for (k, &value) in row.iter().enumerate() {
-            let (j, k) = (j % MAX_TECHNIQUES, k % MAX_TECHNIQUES);
-            (m[j][k], m[k][j]) = (value, value);
-        }
-    }
-    let mut vectors = Matrix::default();
-    for (i, row) in vectors.iter_mut().enumerate() {
-        row[i] = 1.0;
-    }
+    let mut m: Matrix = from_fn(|j| from_fn(|k| triangle.at(j.max(k), j.min(k))));
+    let mut vectors: Matrix = from_fn(|j| from_fn(|k| if j == k { 1.0 } else { 0.0 }));
     // Convergence is quadratic: 16 unknowns need about 8 sweeps.
     for _ in 0..30 {
         let mut rotated = false;
@@ -136,10 +128,7 @@ fn spectral(triangle: &Triangle<&mut [f64]>) -> Factor {
             break;
         }
     }
-    let mut values = Vector::default();
-    for (i, (value, row)) in values.iter_mut().zip(&m).enumerate() {
-        *value = row[i];
-    }
+    let values: Vector = from_fn(|i| m[i][i]);
     let largest = values.iter().take(n).fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let mut inverse = Vector::default();
     for (inverse, value) in inverse.iter_mut().zip(values).filter(|(_, value)| value.abs() > RANK_TOLERANCE * largest) {
@@ -166,21 +155,14 @@ fn rotate(m: &mut Matrix, vectors: &mut Matrix, p: usize, q: usize, n: usize) ->
     let sin = t * cos;
     m[p][p] -= t * off;
     m[q][q] += t * off;
-    m[p][q] = 0.0;
-    m[q][p] = 0.0;
+    (m[p][q], m[q][p]) = (0.0, 0.0);
+    let turned = |along_p: f64, along_q: f64| (cos * along_p - sin * along_q, sin * along_p + cos * along_q);
     for k in (0..n).map(|k| k % MAX_TECHNIQUES).filter(|&k| k != p && k != q) {
-        let (along_p, along_q) = (m[k][p], m[k][q]);
-        m[k][p] = cos * along_p - sin * along_q;
-        m[k][q] = sin * along_p + cos * along_q;
-        m[p][k] = m[k][p];
-        m[q][k] = m[k][q];
+        (m[k][p], m[k][q]) = turned(m[k][p], m[k][q]);
+        (m[p][k], m[q][k]) = (m[k][p], m[k][q]);
     }
-    let (row_p, row_q) = (vectors[p], vectors[q]);
-    for (out, (along_p, along_q)) in vectors[p].iter_mut().zip(row_p.iter().zip(&row_q)) {
-        *out = cos * along_p - sin * along_q;
-    }
-    for (out, (along_p, along_q)) in vectors[q].iter_mut().zip(row_p.iter().zip(&row_q)) {
-        *out = sin * along_p + cos * along_q;
+    if let Ok([row_p, row_q]) = vectors.get_disjoint_mut([p, q]) {
+        row_p.iter_mut().zip(row_q).for_each(|(p, q)| (*p, *q) = turned(*p, *q));
     }
     true
 }

@@ -15,7 +15,7 @@ pub const fn len(techniques: usize, integrals: usize) -> usize {
         return 0;
     }
     let Some(of_integrals) = integrals.checked_mul(record_len(techniques) + techniques) else { return 0 };
-    let Some(len) = of_integrals.checked_add(1 + techniques + packed_len(techniques)) else { return 0 };
+    let Some(len) = of_integrals.checked_add(sums_len(techniques, 0)) else { return 0 };
     if len <= isize::MAX as usize / size_of::<f64>() { len } else { 0 }
 }
 
@@ -24,58 +24,39 @@ pub(super) const fn sums_len(techniques: usize, integrals: usize) -> usize {
     1 + techniques + packed_len(techniques) + integrals * record_len(techniques)
 }
 
-/// The sums over the samples s, with S = sum_k n_k p_k.
-pub(super) struct Sums<'a> {
+/// The memory's parts: sums over the samples s, with S = sum_k n_k p_k.
+pub(super) struct Sums<N, S> {
     /// How many samples, less what has decayed.
-    pub(super) samples: f64,
+    pub(super) samples: N,
     /// sum_s p / S, one per technique.
-    pub(super) ratio: &'a [f64],
+    pub(super) ratio: S,
     /// A = sum_s p p' / S^2, its lower triangle by rows.
-    pub(super) matrix: &'a [f64],
-    records: &'a [f64],
+    pub(super) matrix: S,
+    /// Of each integral sum_s f / S, the sum of the progressive estimator's terms, and b = sum_s f p / S^2.
+    pub(super) records: Rows<S>,
+    /// Of each integral the progressive estimator's alpha, which is no sum.
+    pub(super) alphas: Rows<S>,
 }
 
-/// As [`Sums`], to be changed.
-pub(super) struct SumsMut<'a> {
-    pub(super) samples: &'a mut f64,
-    pub(super) ratio: &'a mut [f64],
-    pub(super) matrix: &'a mut [f64],
-    /// Of each integral balance, progressive and moment.
-    pub(super) records: Rows<&'a mut [f64]>,
-}
-
-/// The sums of one integral.
-pub(super) struct Record<'a> {
-    /// sum_s f / S.
-    pub(super) balance: f64,
-    /// sum_s of the progressive estimator's terms.
-    pub(super) progressive: f64,
-    /// b = sum_s f p / S^2.
-    pub(super) moment: &'a [f64],
-}
-
-impl<'a> Sums<'a> {
-    pub(super) fn of(sums: &'a [f64], techniques: usize) -> Option<Self> {
+impl<'a> Sums<f64, &'a [f64]> {
+    pub(super) fn of(memory: &'a [f64], techniques: usize, integrals: usize) -> Option<Self> {
+        let (sums, alphas) = memory.split_at_checked(sums_len(techniques, integrals))?;
         let (&samples, rest) = sums.split_first()?;
         let (ratio, rest) = rest.split_at_checked(techniques)?;
         let (matrix, records) = rest.split_at_checked(packed_len(techniques))?;
-        Some(Sums { samples, ratio, matrix, records })
-    }
-
-    pub(super) fn records(&self) -> impl Iterator<Item = Record<'a>> + use<'a> {
-        rows(self.records, record_len(self.ratio.len())).filter_map(|record| match record {
-            &[balance, progressive, ref moment @ ..] => Some(Record { balance, progressive, moment }),
-            _ => None,
-        })
+        let records = rows(records, record_len(techniques));
+        Some(Sums { samples, ratio, matrix, records, alphas: rows(alphas, techniques) })
     }
 }
 
-impl<'a> SumsMut<'a> {
-    pub(super) fn of(sums: &'a mut [f64], techniques: usize) -> Option<Self> {
+impl<'a> Sums<&'a mut f64, &'a mut [f64]> {
+    pub(super) fn of_mut(memory: &'a mut [f64], techniques: usize, integrals: usize) -> Option<Self> {
+        let (sums, alphas) = memory.split_at_mut_checked(sums_len(techniques, integrals))?;
         let (samples, rest) = sums.split_first_mut()?;
         let (ratio, rest) = rest.split_at_mut_checked(techniques)?;
         let (matrix, records) = rest.split_at_mut_checked(packed_len(techniques))?;
-        Some(SumsMut { samples, ratio, matrix, records: rows_mut(records, record_len(techniques)) })
+        let records = rows_mut(records, record_len(techniques));
+        Some(Sums { samples, ratio, matrix, records, alphas: rows_mut(alphas, techniques) })
     }
 }
 

@@ -13,11 +13,12 @@
 //! the balance estimate less what the samples got wrong about the densities' integrals, each of which is 1.
 
 use super::linear::{self, MAX_TECHNIQUES, System, Vector};
-use super::memory::{Sums, SumsMut, len, sums_len};
+use super::memory::{Sums, len, sums_len};
 use super::solver::Solver;
 use crate::error::{Error, check_part};
+use crate::matrix::copy;
 use crate::real::saturate;
-use crate::rows::{first, rows, rows_mut};
+use crate::rows::{first, first_mut, rows_mut};
 
 /// Sums from which the integrals of several functions are estimated with optimal MIS weights.
 ///
@@ -59,7 +60,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
             return Err(Error::Memory);
         }
         let mut all = [0; MAX_TECHNIQUES];
-        all.iter_mut().zip(counts).for_each(|(to, &from)| *to = from);
+        copy(&mut all, counts);
         Ok(OptimalMis { counts: all, techniques: counts.len(), integrals, memory })
     }
 
@@ -86,14 +87,15 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         }
         let (sums, rounds) = self.sums()?;
         let system = self.system(solver)?;
-        for (out, record) in estimate.iter_mut().zip(sums.records()) {
+        for (out, record) in estimate.iter_mut().zip(sums.records) {
+            let [balance, progressive, moment @ ..] = record else { break };
             *out = saturate(match solver {
-                Solver::Progressive => record.progressive / rounds,
-                Solver::Balance => record.balance / rounds,
+                Solver::Progressive => progressive / rounds,
+                Solver::Balance => balance / rounds,
                 Solver::Plain | Solver::Ridge(_) => {
-                    let alpha = system.solve(record.moment);
+                    let alpha = system.solve(moment);
                     let error = sums.ratio.iter().zip(&alpha).map(|(ratio, alpha)| (ratio / rounds - 1.0) * alpha);
-                    record.balance / rounds - error.sum::<f64>()
+                    balance / rounds - error.sum::<f64>()
                 }
             });
         }
@@ -111,13 +113,11 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         }
         let (sums, _) = self.sums()?;
         let system = self.system(solver)?;
-        if solver == Solver::Progressive {
-            let (_, current) = self.split()?;
-            alpha.iter_mut().zip(current).for_each(|(out, &alpha)| *out = saturate(alpha));
-            return Ok(());
-        }
-        for (row, record) in rows_mut(alpha, self.techniques).zip(sums.records()) {
-            row.iter_mut().zip(system.solve(record.moment)).for_each(|(out, alpha)| *out = saturate(alpha));
+        for (row, (record, current)) in rows_mut(alpha, self.techniques).zip(sums.records.zip(sums.alphas)) {
+            let [_, _, moment @ ..] = record else { break };
+            let solved = system.solve(moment);
+            let alpha = if solver == Solver::Progressive { current } else { &solved };
+            row.iter_mut().zip(alpha).for_each(|(out, &alpha)| *out = saturate(alpha));
         }
         Ok(())
     }
@@ -134,16 +134,10 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     }
 
     /// The sums and the number of rounds R, which is positive.
-    fn sums(&self) -> Result<(Sums<'_>, f64), Error> {
-        let sums = Sums::of(self.split()?.0, self.techniques).ok_or(Error::Memory)?;
+    fn sums(&self) -> Result<(Sums<f64, &[f64]>, f64), Error> {
+        let sums = Sums::of(self.memory.as_ref(), self.techniques, self.integrals).ok_or(Error::Memory)?;
         let rounds = sums.samples / self.sum_counts();
         if rounds > 0.0 { Ok((sums, rounds)) } else { Err(Error::NoSamples) }
-    }
-
-    /// All sums, and the progressive estimator's alphas.
-    fn split(&self) -> Result<(&[f64], &[f64]), Error> {
-        let at = sums_len(self.techniques, self.integrals);
-        self.memory.as_ref().split_at_checked(at).ok_or(Error::Memory)
     }
 }
 
@@ -186,18 +180,16 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         ratio.iter_mut().zip(pdf).for_each(|(ratio, &p)| *ratio = f64::from(p) / sum);
 
         let per_sample = 1.0 / self.sum_counts();
-        let (sums, alphas) = self.split_mut()?;
-        let sums = SumsMut::of(sums, techniques).ok_or(Error::Memory)?;
+        let sums = self.sums_mut()?;
         *sums.samples += 1.0;
         sums.ratio.iter_mut().zip(&ratio).for_each(|(sum, ratio)| *sum += ratio);
         linear::add_products(sums.matrix, first(&ratio, techniques), 1.0);
-        let of_integrals = sums.records.zip(rows(alphas, techniques));
-        for (&value, (record, alpha)) in value.iter().zip(of_integrals) {
+        for (&value, (record, alpha)) in value.iter().zip(sums.records.zip(sums.alphas)) {
             let [balance, progressive, moment @ ..] = record else { break };
             let value = f64::from(value) / sum;
             *balance += value;
             // sum alpha, shared out over the round's samples, + (f - sum alpha p) / S.
-            let control: f64 = alpha.iter().zip(&ratio).map(|(alpha, ratio)| alpha * (per_sample - ratio)).sum();
+            let control: f64 = alpha.iter().zip(&ratio).map(|(alpha, ratio)| *alpha * (per_sample - ratio)).sum();
             *progressive += value + control;
             moment.iter_mut().zip(&ratio).for_each(|(b, ratio)| *b += value * ratio);
         }
@@ -215,11 +207,11 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         if solver == Solver::Progressive {
             return Err(Error::Unsupported);
         }
-        let (techniques, system) = (self.techniques, self.system(solver)?);
-        let (sums, alphas) = self.split_mut()?;
-        let sums = Sums::of(sums, techniques).ok_or(Error::Memory)?;
-        for (alpha, record) in rows_mut(alphas, techniques).zip(sums.records()) {
-            alpha.iter_mut().zip(system.solve(record.moment)).for_each(|(alpha, solved)| *alpha = solved);
+        let system = self.system(solver)?;
+        let sums = self.sums_mut()?;
+        for (alpha, record) in sums.alphas.zip(sums.records) {
+            let [_, _, moment @ ..] = record else { break };
+            copy(alpha, &system.solve(moment));
         }
         Ok(())
     }
@@ -230,7 +222,8 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// infinity, [`Error::Range`] outside 0..=1.
     pub fn decay(&mut self, beta: f32) -> Result<(), Error> {
         check_part(beta)?;
-        self.split_mut()?.0.iter_mut().for_each(|sum| *sum *= f64::from(beta));
+        let sums = sums_len(self.techniques, self.integrals);
+        first_mut(self.memory.as_mut(), sums).iter_mut().for_each(|sum| *sum *= f64::from(beta));
         Ok(())
     }
 
@@ -242,14 +235,14 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         if !like || !same(&self.counts, &other.counts) {
             return Err(Error::Mismatch);
         }
-        let (from, _) = other.split()?;
-        self.split_mut()?.0.iter_mut().zip(from).for_each(|(to, from)| *to += from);
+        let sums = sums_len(self.techniques, self.integrals);
+        let into = first_mut(self.memory.as_mut(), sums).iter_mut();
+        into.zip(other.memory.as_ref()).for_each(|(to, from)| *to += from);
         Ok(())
     }
 
-    fn split_mut(&mut self) -> Result<(&mut [f64], &mut [f64]), Error> {
-        let at = sums_len(self.techniques, self.integrals);
-        self.memory.as_mut().split_at_mut_checked(at).ok_or(Error::Memory)
+    fn sums_mut(&mut self) -> Result<Sums<&mut f64, &mut [f64]>, Error> {
+        Sums::of_mut(self.memory.as_mut(), self.techniques, self.integrals).ok_or(Error::Memory)
     }
 }
 

@@ -28,6 +28,7 @@ pub mod table;
 pub use crate::pixels::{PixelSampler, fill, fill_len};
 
 use crate::hash::{FRAMES, GOLDEN, SCRAMBLE, child, mix};
+use crate::rng::unit;
 use crate::rows::first_mut;
 
 /// One sample of one pixel: 16 bytes, to be copied freely. Drawing does not change it. Any value of the fields is
@@ -119,7 +120,7 @@ impl Sampler {
                 *value = value.wrapping_add(mix(self.domain.wrapping_add(GOLDEN.wrapping_mul(number))));
             }
         }
-        fixed.map(|value| (value >> 8) as f32 * (1.0 / 16_777_216.0))
+        fixed.map(unit)
     }
 
     /// Draws `dims` numbers, 1 to 4, of this sample and of those that follow it: sample k's to `u[k * stride..]`, for

@@ -9,7 +9,16 @@ pub const ENTRIES: usize = ((SIZE * SIZE) << BITS) as usize;
 
 /// For each pixel, row by row, and each value of the leading bits of a coordinate: in the low half what the first
 /// coordinate's leading 16 bits are exclusive-or, in the high half what the second's are. Made by `fsot sampler`.
-pub static TABLE: [u32; ENTRIES] = entries(include_bytes!("../../tiles/nested_32.bin"));
+pub static TABLE: [u32; ENTRIES] = {
+    let bytes: &[u8; 4 * ENTRIES] = include_bytes!("../../tiles/nested_32.bin");
+    let (chunks, _) = bytes.as_chunks();
+    let (mut all, mut i) = ([0; ENTRIES], 0);
+    while i < ENTRIES {
+        all[i] = u32::from_le_bytes(chunks[i]);
+        i += 1;
+    }
+    all
+};
 
 /// Sobol's first two dimensions at an index: its reversed bits, and Pascal's matrix modulo 2 times these.
 #[inline]
@@ -37,14 +46,4 @@ const FINE: [u32; 2] = [0x9e37_79b9, 0xc13f_a9a9];
 #[inline]
 pub const fn fine(value: u32, pixel: u32, axis: usize) -> u32 {
     value ^ (pixel << 8 | value >> 24).wrapping_mul(FINE[axis & 1]) >> 8
-}
-
-const fn entries(bytes: &[u8; 4 * ENTRIES]) -> [u32; ENTRIES] {
-    let (chunks, _) = bytes.as_chunks();
-    let (mut all, mut i) = ([0; ENTRIES], 0);
-    while i < ENTRIES {
-        all[i] = u32::from_le_bytes(chunks[i]);
-        i += 1;
-    }
-    all
 }

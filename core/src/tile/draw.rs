@@ -3,8 +3,8 @@
 use super::point::{Net, netted, point};
 use super::sampler::Sampler;
 use super::site::Site;
-use super::view::unit;
 use crate::pixels::PixelSampler;
+use crate::rng::unit;
 use crate::rows::from_mut;
 
 impl Sampler<'_> {

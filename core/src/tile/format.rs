@@ -2,7 +2,8 @@
 
 use super::shape::Shape;
 use crate::Error;
-use crate::checksum::Crc;
+use crate::checksum::crc;
+use crate::rows::{first, from};
 
 /// Bytes of the header.
 pub const HEADER_BYTES: usize = 128;
@@ -13,6 +14,8 @@ pub const VERSION: u16 = 1;
 /// How a tile begins. As in PNG, the line ends and the byte above 127 show files that were transferred as text.
 pub const MAGIC: [u8; 8] = *b"\x8eNFT\r\n\x1a\n";
 
+/// Where the checksum of all other bytes stands.
+const CHECKSUM: usize = 12;
 const PROGRESSIVE: u32 = 1;
 
 /// What a tile's file says about it.
@@ -45,14 +48,10 @@ impl Header {
     /// [`Error::Range`] for a shape or text outside these limits.
     pub fn new(shape: Shape, seed: u64, kernel: &str) -> Result<Header, Error> {
         let mut text = [0; KERNEL_BYTES];
-        let place = text.get_mut(..kernel.len()).ok_or(Error::Range)?;
-        place.iter_mut().zip(kernel.bytes()).for_each(|(to, from)| *to = from);
+        text.iter_mut().zip(kernel.bytes()).for_each(|(to, from)| *to = from);
         let header = Header { shape, seed, kernel: text };
-        if shape.is_valid() && header.text_is_valid() && !kernel.contains('\0') {
-            Ok(header)
-        } else {
-            Err(Error::Range)
-        }
+        let is_whole = kernel.len() <= KERNEL_BYTES && !kernel.contains('\0');
+        if shape.is_valid() && header.text_is_valid() && is_whole { Ok(header) } else { Err(Error::Range) }
     }
 
     /// How many values, and how they are stored.
@@ -79,13 +78,8 @@ impl Header {
         if payload.len() as u64 != self.shape.payload_bytes() {
             return Err(Error::Length);
         }
-        let before = self.before_checksum();
-        let after = self.after_checksum();
-        let checksum = Crc::new().add(&before).add(&after).add(payload).finish().to_le_bytes();
-        let mut bytes = [0; HEADER_BYTES];
-        let all = before.iter().chain(&checksum).chain(&after);
-        bytes.iter_mut().zip(all).for_each(|(to, &from)| *to = from);
-        Ok(bytes)
+        let rest = self.bytes(0);
+        Ok(self.bytes(crc([first(&rest, CHECKSUM), from(&rest, CHECKSUM + 4), payload])))
     }
 
     /// The header of a file's bytes, and its payload; all bytes are checked.
@@ -129,19 +123,16 @@ impl Header {
         if version == VERSION && shape.is_valid() && header.text_is_valid() { Ok(header) } else { Err(Error::Corrupt) }
     }
 
-    /// Bytes 0 to 12.
-    fn before_checksum(&self) -> [u8; 12] {
-        let [a, b, c, d, e, f, g, h] = MAGIC;
-        let ([i, j], [k, l]) = (VERSION.to_le_bytes(), (HEADER_BYTES as u16).to_le_bytes());
-        [a, b, c, d, e, f, g, h, i, j, k, l]
-    }
-
-    /// Bytes 16 to 128.
-    fn after_checksum(&self) -> [u8; HEADER_BYTES - 16] {
+    /// With this checksum.
+    fn bytes(&self, checksum: u32) -> [u8; HEADER_BYTES] {
         let Shape { size, spp, dims, frames, bits, progressive } = self.shape;
         let flags = if progressive { PROGRESSIVE } else { 0 };
         let fields = [
-            &self.shape.payload_bytes().to_le_bytes()[..],
+            &MAGIC[..],
+            &VERSION.to_le_bytes(),
+            &(HEADER_BYTES as u16).to_le_bytes(),
+            &checksum.to_le_bytes(),
+            &self.shape.payload_bytes().to_le_bytes(),
             &self.seed.to_le_bytes(),
             &(size as u16).to_le_bytes(),
             &(spp as u16).to_le_bytes(),
@@ -152,9 +143,8 @@ impl Header {
             &[0; 4],
             &self.kernel,
         ];
-        let mut bytes = [0; HEADER_BYTES - 16];
-        let all = fields.into_iter().flatten();
-        bytes.iter_mut().zip(all).for_each(|(to, &from)| *to = from);
+        let mut bytes = [0; HEADER_BYTES];
+        bytes.iter_mut().zip(fields.into_iter().flatten()).for_each(|(to, &from)| *to = from);
         bytes
     }
 

@@ -56,29 +56,20 @@ fn shuffle(index: u32, seed: u32) -> u32 {
 /// The direction numbers of each dimension, their bits reversed: S. Joe and F. Kuo, "Constructing Sobol Sequences with
 /// Better Two-Dimensional Projections", 2008, the table new-joe-kuo-6.
 static DIRECTIONS: [[u32; 32]; MAX_DIMS as usize] = [
-    van_der_corput(),
-    directions(1, 0, [1, 0, 0, 0, 0]),
-    directions(2, 1, [1, 3, 0, 0, 0]),
-    directions(3, 1, [1, 3, 1, 0, 0]),
-    directions(3, 2, [1, 1, 1, 0, 0]),
-    directions(4, 1, [1, 1, 3, 3, 0]),
-    directions(4, 4, [1, 3, 5, 13, 0]),
-    directions(5, 2, [1, 1, 5, 5, 17]),
+    // Bit k of the index is bit k of the reversed point.
+    directions(0, &[1; 32]),
+    directions(0, &[1]),
+    directions(1, &[1, 3]),
+    directions(1, &[1, 3, 1]),
+    directions(2, &[1, 1, 1]),
+    directions(1, &[1, 1, 3, 3]),
+    directions(4, &[1, 3, 5, 13]),
+    directions(2, &[1, 1, 5, 5, 17]),
 ];
 
-/// The first dimension: bit k of the index is bit k of the reversed point.
-const fn van_der_corput() -> [u32; 32] {
-    let mut numbers = [0; 32];
-    let mut k = 0;
-    while k < 32 {
-        numbers[k] = 1 << k;
-        k += 1;
-    }
-    numbers
-}
-
-/// From a primitive polynomial's degree and inner coefficients, and the first numbers.
-const fn directions(degree: usize, coefficients: u32, initial: [u32; 5]) -> [u32; 32] {
+/// From a primitive polynomial's inner coefficients, and the first numbers, as many as its degree.
+const fn directions(coefficients: u32, initial: &[u32]) -> [u32; 32] {
+    let degree = initial.len();
     // Number k is below 2^(k + 1).
     let mut numbers = [0_u32; 32];
     let mut k = 0;

@@ -21,16 +21,14 @@
 //! assert!(cosine_hemisphere_inverse(direction).distance(u) < 1e-5);
 //! ```
 
-mod cone;
+mod cap;
 mod disc;
 mod frame;
-mod hemisphere;
-mod sphere;
 mod triangle;
 
-pub use cone::{uniform_cone, uniform_cone_inverse, uniform_cone_pdf};
+pub use cap::{uniform_cone, uniform_cone_inverse, uniform_cone_pdf};
+pub use cap::{uniform_hemisphere, uniform_hemisphere_inverse, uniform_hemisphere_pdf};
+pub use cap::{uniform_sphere, uniform_sphere_inverse, uniform_sphere_pdf};
 pub use disc::{concentric_disc, concentric_disc_inverse, concentric_disc_pdf};
-pub use hemisphere::{cosine_hemisphere, cosine_hemisphere_inverse, cosine_hemisphere_pdf};
-pub use hemisphere::{uniform_hemisphere, uniform_hemisphere_inverse, uniform_hemisphere_pdf};
-pub use sphere::{uniform_sphere, uniform_sphere_inverse, uniform_sphere_pdf};
+pub use disc::{cosine_hemisphere, cosine_hemisphere_inverse, cosine_hemisphere_pdf};
 pub use triangle::{uniform_triangle, uniform_triangle_inverse, uniform_triangle_pdf};

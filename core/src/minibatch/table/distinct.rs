@@ -1,11 +1,12 @@
 //! Drawing without replacement.
 
-use super::draw::check_lengths;
+use super::draw::{check_lengths, noise};
 use super::importances::Table;
-use super::kernel::Kernel;
+use super::kernel::{Kernel, Portable};
 use super::mixture::Mixture;
 use crate::Error;
 use crate::rng::Rng;
+use crate::rows::first;
 
 /// A search for an item not yet taken ends where so many should have been found: once in e^64 searches, or where the
 /// table's memory has been damaged.
@@ -40,8 +41,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
             return Err(Error::Range);
         }
         let items = self.state.items;
-        let importance = || self.importance.as_ref().iter().take(items as usize);
-        let possible = || importance().filter(|q| **q > 0.0).take(index.len()).count();
+        let importance = first(self.importance.as_ref(), items as usize);
+        let possible = || importance.iter().filter(|q| **q > 0.0).take(index.len()).count();
         if self.state.uniform_fraction == 0.0 && possible() < index.len() {
             return Err(Error::NoSamples);
         }
@@ -72,7 +73,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
         if self.state.scale != scale {
             // Without its largest items the table went to another scale.
             self.state.scale = scale;
-            self.rebuild_at_scale();
+            self.build::<Portable>();
         }
         Ok(())
     }
@@ -82,7 +83,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     fn draw_left(&self, mixture: &Mixture, left: f64, rng: &mut Rng) -> u32 {
         let (mut item, mut expected) = ([0], 0.0);
         while expected < PATIENCE {
-            self.draw_mixture::<1>(mixture, 1.0, rng, &mut item, None);
+            self.draw_mixture::<1>(mixture, 1.0, rng, &mut item, None, noise);
             if !self.is_taken(item[0]) {
                 return item[0];
             }

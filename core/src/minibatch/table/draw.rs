@@ -1,8 +1,7 @@
 //! Drawing batches with replacement.
 
-use super::block::{ARITY, Block};
 use super::importances::Table;
-use super::kernel::Kernel;
+use super::kernel::{ARITY, Block, Kernel, prefetch};
 use super::mixture::{Mixture, Ways};
 use super::tree::{self, CHILDREN, Levels, Node};
 use crate::Error;
@@ -26,29 +25,10 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     ///
     /// Errors: [`Error::Range`] for another number of weights; [`Error::NoSamples`] where every importance and the
     /// uniform fraction are 0.
-    // As the three below: without one of them, draws take 7 to 15 % more instructions.
+    // As the four below: without one of them, draws take 7 to 15 % more instructions.
     #[inline(always)]
     pub fn draw(&self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
-        check_lengths(index, &weight)?;
-        if index.is_empty() {
-            return Ok(());
-        }
-        self.draw_mixture::<CHUNK>(&self.mixture()?, f64::from(self.state.items), rng, index, weight);
-        Ok(())
-    }
-
-    /// As [`Table::draw`], for a mixture of its own and checked lengths; weights are 1 / (`factor` p).
-    #[inline]
-    pub(super) fn draw_mixture<const AT_ONCE: usize>(
-        &self,
-        mixture: &Mixture,
-        factor: f64,
-        rng: &mut Rng,
-        index: &mut [u32],
-        weight: Option<&mut [f32]>,
-    ) {
-        let seed = rng.next_u64();
-        self.draw_at::<AT_ONCE>(mixture, factor, index, weight, |k| noise(seed, k));
+        self.draw_by(rng, index, weight, noise)
     }
 
     /// As [`Table::draw`], one draw from each of as many equal parts of the line of probabilities as there are draws:
@@ -59,35 +39,53 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// come by columns of four: 0, 4, 8, 12, 1, ... Use the batch as a whole.
     #[inline]
     pub fn draw_stratified(&self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
-        check_lengths(index, &weight)?;
-        if index.is_empty() {
-            return Ok(());
-        }
-        let mixture = self.mixture()?;
-        let seed = rng.next_u64();
         let width = u64::MAX / (index.len() as u64).max(1);
-        self.draw_at::<CHUNK>(&mixture, f64::from(self.state.items), index, weight, |k| {
-            k.wrapping_mul(width).wrapping_add(high_product(noise(seed, k), width))
-        });
-        Ok(())
+        let within = |seed, k| ((u128::from(noise(seed, k)) * u128::from(width)) >> 64) as u64;
+        self.draw_by(rng, index, weight, |seed, k| k.wrapping_mul(width).wrapping_add(within(seed, k)))
     }
 
     #[inline(always)]
-    fn draw_at<const AT_ONCE: usize>(
+    fn draw_by(
+        &self,
+        rng: &mut Rng,
+        index: &mut [u32],
+        weight: Option<&mut [f32]>,
+        bits: impl Fn(u64, u64) -> u64,
+    ) -> Result<(), Error> {
+        check_lengths(index, &weight)?;
+        if !index.is_empty() {
+            self.draw_mixture::<CHUNK>(&self.mixture()?, f64::from(self.state.items), rng, index, weight, bits);
+        }
+        Ok(())
+    }
+
+    /// Draws from a mixture of its own, for checked lengths: draw k where `bits`, of a seed and k, fall. Weights are
+    /// 1 / (`factor` p).
+    #[inline(always)]
+    pub(super) fn draw_mixture<const AT_ONCE: usize>(
         &self,
         mixture: &Mixture,
         factor: f64,
+        rng: &mut Rng,
         index: &mut [u32],
         weight: Option<&mut [f32]>,
-        bits: impl Fn(u64) -> u64,
+        bits: impl Fn(u64, u64) -> u64,
     ) {
-        let descent = Descent::new(self, mixture, factor);
-        let mut first = 0;
+        let (by_weight, by_item) = mixture.factors(factor);
+        let descent = Descent {
+            blocks: self.blocks(),
+            nodes: self.nodes(),
+            levels: self.levels,
+            ways: mixture.ways(),
+            by_weight,
+            by_item,
+            last: mixture.items.saturating_sub(1),
+        };
+        let seed = rng.next_u64();
         let mut weights = weight.map(|weight| weight.chunks_mut(AT_ONCE));
-        for index in index.chunks_mut(AT_ONCE) {
+        for (chunk, index) in (0..).zip(index.chunks_mut(AT_ONCE)) {
             let weight = weights.as_mut().and_then(Iterator::next).unwrap_or_default();
-            descent.draw::<K, AT_ONCE>(first, index, weight, &bits);
-            first += AT_ONCE as u64;
+            descent.draw::<K, AT_ONCE>(index, weight, |i| bits(seed, chunk * AT_ONCE as u64 + i));
         }
     }
 }
@@ -105,33 +103,10 @@ struct Descent<'a> {
     last: u32,
 }
 
-impl<'a> Descent<'a> {
-    fn new<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel>(
-        table: &'a Table<I, S, K>,
-        mixture: &Mixture,
-        factor: f64,
-    ) -> Self {
-        let (by_weight, by_item) = mixture.factors(factor);
-        Descent {
-            blocks: table.blocks(),
-            nodes: table.nodes(),
-            levels: table.levels,
-            ways: mixture.ways(),
-            by_weight,
-            by_item,
-            last: mixture.items.saturating_sub(1),
-        }
-    }
-
-    /// At most `AT_ONCE` draws, the first being number `first` of the batch; as many weights as draws, or none.
+impl Descent<'_> {
+    /// At most `AT_ONCE` draws; as many weights as draws, or none.
     #[inline(always)]
-    fn draw<K: Kernel, const AT_ONCE: usize>(
-        &self,
-        first: u64,
-        index: &mut [u32],
-        weight: &mut [f32],
-        bits: &impl Fn(u64) -> u64,
-    ) {
+    fn draw<K: Kernel, const AT_ONCE: usize>(&self, index: &mut [u32], weight: &mut [f32], bits: impl Fn(u64) -> u64) {
         // The draws by the tree: which of the chunk's they are, in which node or block they are, the position among its
         // weights, and behind its point.
         let mut slot = [0u8; AT_ONCE];
@@ -142,7 +117,7 @@ impl<'a> Descent<'a> {
         let mut trees = 0;
         // Without branches, which could not be predicted: every draw is written as both, and one of them counts.
         for (i, out) in index.iter_mut().enumerate().take(AT_ONCE) {
-            let bits = bits(first + i as u64);
+            let bits = bits(i as u64);
             let uniform = self.ways.last_uniform.is_some_and(|last| bits <= last);
             let (place, below) = self.ways.scales[usize::from(uniform)].map(bits);
             slot[trees % AT_ONCE] = i as u8;
@@ -157,17 +132,11 @@ impl<'a> Descent<'a> {
         // The weights of their blocks.
         let mut weights = [1f64; AT_ONCE];
         for (((place, rest), fraction), weight) in
-            place.iter_mut().zip(&rest).zip(&mut fraction).zip(&mut weights).take(trees)
+            place.iter_mut().zip(&mut rest).zip(&mut fraction).zip(&mut weights).take(trees)
         {
-            let Some(node) = self.nodes.get(*place as usize) else { continue };
-            let child = K::find_child(node, *rest) % CHILDREN;
-            let (begin, end) = tree::span(node, child);
-            *fraction += rest.wrapping_sub(begin) as f64;
-            *weight = end.wrapping_sub(begin) as f64;
-            *place = *place * CHILDREN as u32 + child as u32;
-            if let Some(next) = self.blocks.get(*place as usize) {
-                K::prefetch(next);
-            }
+            *weight = self.step::<K>(0, place, rest) as f64;
+            *fraction += *rest as f64;
+            prefetch::<K, _>(self.blocks, *place as usize);
         }
         // Where in the block.
         for (fraction, weight) in fraction.iter_mut().zip(&weights) {
@@ -207,11 +176,10 @@ impl<'a> Descent<'a> {
             let (Some(block), Some(node)) = (self.blocks.get(which), self.nodes.get(which / CHILDREN)) else {
                 continue;
             };
-            let (begin, end) = tree::span(node, which % CHILDREN);
             let total = K::total(block);
             // A block of importance 0 can be drawn from uniformly only.
             let (q, total) = if total > 0.0 { (block[item as usize % ARITY], total) } else { (0.0, 1.0) };
-            *out = self.weight(q, total, end.wrapping_sub(begin) as f64);
+            *out = self.weight(q, total, tree::weight(node, which % CHILDREN) as f64);
         }
     }
 
@@ -229,35 +197,32 @@ impl<'a> Descent<'a> {
         let near = starts.iter().position(|&start| self.nodes.len() - start <= NEAR).unwrap_or(0).max(1);
         let (far, near) = halves(starts, near);
         for (place, rest) in place.iter_mut().zip(rest.iter_mut()).take(draws) {
-            let mut at = (0, *rest);
+            let mut at = (*place, *rest);
             for start in near.iter().rev() {
                 self.step::<K>(*start, &mut at.0, &mut at.1);
             }
             (*place, *rest) = at;
-            self.prefetch::<K>(far.last(), *place);
+            if let Some(below) = far.last() {
+                prefetch::<K, _>(self.nodes, below + *place as usize);
+            }
         }
         for (below, start) in far.iter().zip(from(far, 1)).rev() {
             for (place, rest) in place.iter_mut().zip(rest.iter_mut()).take(draws) {
                 self.step::<K>(*start, place, rest);
-                self.prefetch::<K>(Some(below), *place);
+                prefetch::<K, _>(self.nodes, below + *place as usize);
             }
         }
     }
 
-    /// From a node of the level that starts at `start` to one of its children.
+    /// From a node of the level that starts at `start` to one of its children, whose weight is returned.
     #[inline]
-    fn step<K: Kernel>(&self, start: usize, place: &mut u32, rest: &mut i64) {
-        let Some(node) = self.nodes.get(start + *place as usize) else { return };
+    fn step<K: Kernel>(&self, start: usize, place: &mut u32, rest: &mut i64) -> i64 {
+        let Some(node) = self.nodes.get(start + *place as usize) else { return 1 };
         let child = K::find_child(node, *rest) % CHILDREN;
-        *rest = rest.wrapping_sub(tree::span(node, child).0);
+        let (begin, end) = tree::span(node, child);
+        *rest = rest.wrapping_sub(begin);
         *place = *place * CHILDREN as u32 + child as u32;
-    }
-
-    #[inline]
-    fn prefetch<K: Kernel>(&self, start: Option<&usize>, place: u32) {
-        if let Some(node) = start.and_then(|start| self.nodes.get(start + place as usize)) {
-            K::prefetch(node);
-        }
+        end.wrapping_sub(begin)
     }
 
     /// 1 / (factor p), with one division, for an item of importance `q` in a block of this sum and weight.
@@ -272,20 +237,12 @@ const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
 /// Errors: [`Error::Range`] unless there are as many weights as indices, or none at all.
 pub(super) fn check_lengths(index: &[u32], weight: &Option<&mut [f32]>) -> Result<(), Error> {
-    match weight {
-        Some(weight) if weight.len() != index.len() => Err(Error::Range),
-        _ => Ok(()),
-    }
-}
-
-/// The upper half of a product: `bits` scaled to 0..`n`.
-#[inline]
-fn high_product(bits: u64, n: u64) -> u64 {
-    ((u128::from(bits) * u128::from(n)) >> 64) as u64
+    let differ = weight.as_ref().is_some_and(|weight| weight.len() != index.len());
+    if differ { Err(Error::Range) } else { Ok(()) }
 }
 
 /// The bits of draw `k`: draws need no order.
 #[inline]
-fn noise(seed: u64, k: u64) -> u64 {
+pub(super) fn noise(seed: u64, k: u64) -> u64 {
     split_mix(seed, k.wrapping_add(1))
 }

@@ -1,10 +1,10 @@
 //! The table: the memory of the importances and of their sums, and what they say.
 
-use super::block::{ARITY, Block};
-use super::kernel::{Kernel, Portable};
+use super::kernel::{ARITY, Block, Kernel, Portable};
 use super::mixture::Mixture;
 use super::tree::{self, CHILDREN, Levels, MAX_BLOCKS, Node};
 use crate::error::{Error, check_part};
+use crate::real::power_of_two;
 use crate::rows::{at, first};
 use core::marker::PhantomData;
 
@@ -32,6 +32,16 @@ pub struct State {
     pub items: u32,
     /// The part of draws that are uniform, 0..=1.
     pub uniform_fraction: f32,
+}
+
+impl State {
+    /// Whether a table may have it.
+    pub(super) fn is_valid(&self) -> bool {
+        (power_of_two(-300)..=power_of_two(300)).contains(&self.scale)
+            && self.scale.to_bits() << 12 == 0
+            && self.items > 0
+            && (0.0..=1.0).contains(&self.uniform_fraction)
+    }
 }
 
 /// Importances of the items of a data set, from which batches are drawn.
@@ -76,20 +86,16 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// contents are not checked: if they are not what that table left there, draws are still of items that exist, but
     /// not as often as they should be, and weights are any numbers.
     pub fn resume(importance: I, sums: S, state: State) -> Result<Self, Error> {
-        if state.items == 0 || !is_scale(state.scale) || !(0.0..=1.0).contains(&state.uniform_fraction) {
+        if !state.is_valid() {
             return Err(Error::Range);
         }
         // The most blocks that the sums are for, by bisection.
         let fits = |blocks| Levels::new(blocks).nodes() * CHILDREN <= sums.as_ref().len();
         let most = (importance.as_ref().len() / ARITY).min(MAX_BLOCKS);
-        let mut blocks = most;
-        if !fits(most) {
-            let mut not = most;
-            blocks = 0;
-            while not - blocks > 1 {
-                let middle = blocks + (not - blocks) / 2;
-                if fits(middle) { blocks = middle } else { not = middle }
-            }
+        let (mut blocks, mut not) = if fits(most) { (most, most) } else { (0, most) };
+        while not - blocks > 1 {
+            let middle = blocks + (not - blocks) / 2;
+            if fits(middle) { blocks = middle } else { not = middle }
         }
         if blocks * ARITY < state.items as usize {
             return Err(Error::Memory);
@@ -172,8 +178,9 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
         let item = item as usize;
         let block = self.blocks().get(item / ARITY);
         let q = at(self.importance.as_ref(), item);
-        let (begin, end) = self.span(item / ARITY);
-        mixture.probability(q, block.map_or(0.0, Portable::total), end.wrapping_sub(begin))
+        let node = self.nodes().get(item / ARITY / CHILDREN);
+        let weight = node.map_or(0, |node| tree::weight(node, item / ARITY % CHILDREN));
+        mixture.probability(q, block.map_or(0.0, Portable::total), weight)
     }
 
     /// Whether the table has these items: else [`Error::Range`].
@@ -181,11 +188,6 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     pub fn check_items(&self, index: &[u32]) -> Result<(), Error> {
         let beyond = index.iter().fold(false, |beyond, &item| beyond | (item >= self.state.items));
         if beyond { Err(Error::Range) } else { Ok(()) }
-    }
-
-    /// Where a block begins and ends among those of its node.
-    fn span(&self, block: usize) -> (i64, i64) {
-        self.nodes().get(block / CHILDREN).map_or((0, 0), |node| tree::span(node, block % CHILDREN))
     }
 
     pub(super) fn mixture(&self) -> Result<Mixture, Error> {
@@ -257,14 +259,4 @@ pub fn check_importances(values: &[f32]) -> Result<(), Error> {
         (true, true) => Err(Error::Range),
         (true, false) => Ok(()),
     }
-}
-
-/// 2^`exponent`, which must be in -1022..=1023.
-pub(super) fn power_of_two(exponent: i64) -> f64 {
-    f64::from_bits(((exponent + 1023) as u64 & 0x7ff) << 52)
-}
-
-/// Whether a scale is a power of two that [`Table`] may have chosen.
-pub(super) fn is_scale(scale: f64) -> bool {
-    (power_of_two(-300)..=power_of_two(300)).contains(&scale) && scale.to_bits() << 12 == 0
 }

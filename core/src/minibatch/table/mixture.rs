@@ -1,5 +1,6 @@
 //! The two ways to an item, and what random bits make of them.
 
+use super::kernel::positive;
 use crate::Error;
 use core::num::NonZeroU128;
 
@@ -22,19 +23,15 @@ impl Mixture {
 
     /// Errors: [`Error::NoSamples`] if every weight is 0 and no draw uniform.
     pub(super) fn of(sum: i64, items: u32, uniform: f64) -> Result<Mixture, Error> {
-        match (sum > 0, uniform > 0.0) {
-            (true, _) => Ok(Mixture { sum, items, tree: 1.0 - uniform, uniform }),
-            (false, true) => Ok(Mixture::uniform(items)),
-            (false, false) => Err(Error::NoSamples),
-        }
+        let (tree, uniform) = parts(sum > 0, uniform)?;
+        Ok(Mixture { sum, items, tree, uniform })
     }
 
     /// The probability of an item of importance `q` in a block of sum `total` that weighs `weight`.
     #[inline]
     pub(super) fn probability(&self, q: f32, total: f64, weight: i64) -> f64 {
         let (by_weight, by_item) = self.factors(1.0);
-        let q = f64::from(if q > 0.0 { q } else { 0.0 });
-        if total > 0.0 { by_weight * weight as f64 * (q / total) + by_item } else { by_item }
+        if total > 0.0 { by_weight * weight as f64 * (positive(q) / total) + by_item } else { by_item }
     }
 
     /// What an item's weight in the tree, and what its mere existence adds to `factor` times its probability.
@@ -52,6 +49,17 @@ impl Mixture {
                 Scale::new(0, uniform, u64::from(self.items)),
             ],
         }
+    }
+}
+
+/// The probability of each way: by importance, if there is any, and uniformly.
+///
+/// Errors: [`Error::NoSamples`] if there is neither.
+pub(super) fn parts(is_any_important: bool, uniform: f64) -> Result<(f64, f64), Error> {
+    match (is_any_important, uniform > 0.0) {
+        (true, _) => Ok((1.0 - uniform, uniform)),
+        (false, true) => Ok((0.0, 1.0)),
+        (false, false) => Err(Error::NoSamples),
     }
 }
 

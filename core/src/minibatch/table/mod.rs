@@ -11,7 +11,6 @@
 //! [`Table::probability`] says is the probability of these rounded weights, so that estimates are unbiased, down to
 //! probabilities of 2^-53 within a block.
 
-mod block;
 mod distinct;
 mod draw;
 mod importances;
@@ -22,9 +21,8 @@ mod shard;
 mod tree;
 mod update;
 
-pub use block::{ARITY, Block};
 pub use importances::{DEFAULT_UNIFORM_FRACTION, State, Table, check_importances, importance_len, sums_len};
-pub use kernel::{Kernel, Portable};
+pub use kernel::{ARITY, Block, Kernel, Portable};
 pub use saved::{HEADER_BYTES, check_saved, saved_items, saved_len};
 pub use shard::{Shard, allocate};
 pub use tree::{CHILDREN, Node};

@@ -3,10 +3,11 @@
 //! Little-endian: the magic "nf_table", version u32, items u32, scale f64, uniform fraction f32, CRC-32 of all other
 //! bytes u32, and an f32 for each item. The sums are made again: they are the same.
 
-use super::importances::{State, Table, is_scale};
-use super::kernel::Kernel;
+use super::importances::{State, Table};
+use super::kernel::{Kernel, Portable};
 use crate::Error;
-use crate::checksum::Crc;
+use crate::checksum::crc;
+use crate::matrix::copy;
 use crate::rows::{first, from, from_mut};
 
 /// Bytes before the importances.
@@ -28,24 +29,17 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     ///
     /// Errors: [`Error::Length`] for another number of bytes.
     pub fn save(&self, bytes: &mut [u8]) -> Result<(), Error> {
-        let items = self.state.items;
+        let State { scale, items, uniform_fraction } = self.state;
         if bytes.len() != saved_len(items) {
             return Err(Error::Length);
         }
-        let fraction = self.state.uniform_fraction.to_le_bytes();
-        let fields =
-            [&MAGIC[..], &VERSION.to_le_bytes(), &items.to_le_bytes(), &self.state.scale.to_le_bytes(), &fraction];
-        let importances = self.importance.as_ref().iter().take(items as usize);
-        for (to, from) in bytes.iter_mut().zip(fields.into_iter().flatten()) {
-            *to = *from;
-        }
-        for (to, q) in from_mut(bytes, HEADER_BYTES).chunks_exact_mut(4).zip(importances) {
-            to.iter_mut().zip(q.to_le_bytes()).for_each(|(to, from)| *to = from);
-        }
+        let (scale, fraction) = (scale.to_le_bytes(), uniform_fraction.to_le_bytes());
+        let fields = [&MAGIC[..], &VERSION.to_le_bytes(), &items.to_le_bytes(), &scale, &fraction];
+        bytes.iter_mut().zip(fields.into_iter().flatten()).for_each(|(to, &from)| *to = from);
+        let (values, _) = from_mut(bytes, HEADER_BYTES).as_chunks_mut();
+        values.iter_mut().zip(self.importance.as_ref()).for_each(|(to, q)| *to = q.to_le_bytes());
         let checksum = checksum(bytes).to_le_bytes();
-        for (to, from) in bytes.iter_mut().skip(CHECKSUM).zip(checksum) {
-            *to = from;
-        }
+        copy(from_mut(bytes, CHECKSUM), &checksum);
         Ok(())
     }
 }
@@ -54,10 +48,8 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
 ///
 /// Errors: [`Error::Length`] for less than a header, [`Error::Foreign`] for other bytes, [`Error::Version`].
 pub fn saved_items(bytes: &[u8]) -> Result<u32, Error> {
-    let mut reader = Reader(bytes);
-    let magic: [u8; 8] = reader.take().ok_or(Error::Length)?;
-    let version = u32::from_le_bytes(reader.take().ok_or(Error::Length)?);
-    let items = u32::from_le_bytes(reader.take().ok_or(Error::Length)?);
+    let (magic, version) = (field(bytes, 0)?, u32::from_le_bytes(field(bytes, 8)?));
+    let items = u32::from_le_bytes(field(bytes, 12)?);
     // Comparing arrays may call bcmp, which a freestanding target need not have.
     if u64::from_le_bytes(magic) != u64::from_le_bytes(MAGIC) {
         return Err(Error::Foreign);
@@ -73,7 +65,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     pub fn load(importance: I, sums: S, bytes: &[u8]) -> Result<Self, Error> {
         let mut table = Table::resume(importance, sums, check(bytes)?)?;
         table.clear().iter_mut().zip(values(bytes)).for_each(|(to, from)| *to = from);
-        if !table.rebuild_at_scale() {
+        if !table.build::<Portable>() {
             // No library has saved this scale with these importances, but nothing is lost.
             table.rebuild();
         }
@@ -91,16 +83,12 @@ fn check(bytes: &[u8]) -> Result<State, Error> {
     if bytes.len() != saved_len(items) {
         return Err(Error::Length);
     }
-    let mut reader = Reader(from(bytes, 16));
-    let scale = f64::from_le_bytes(reader.take().ok_or(Error::Length)?);
-    let uniform_fraction = f32::from_le_bytes(reader.take().ok_or(Error::Length)?);
-    let stored = u32::from_le_bytes(reader.take().ok_or(Error::Length)?);
-    let sound = stored == checksum(bytes)
-        && items > 0
-        && is_scale(scale)
-        && (0.0..=1.0).contains(&uniform_fraction)
+    let (scale, uniform_fraction) = (f64::from_le_bytes(field(bytes, 16)?), f32::from_le_bytes(field(bytes, 24)?));
+    let state = State { scale, items, uniform_fraction };
+    let sound = u32::from_le_bytes(field(bytes, CHECKSUM)?) == checksum(bytes)
+        && state.is_valid()
         && values(bytes).all(|q| q.is_finite() && q.is_sign_positive());
-    if sound { Ok(State { scale, items, uniform_fraction }) } else { Err(Error::Corrupt) }
+    if sound { Ok(state) } else { Err(Error::Corrupt) }
 }
 
 fn values(bytes: &[u8]) -> impl Iterator<Item = f32> {
@@ -109,16 +97,9 @@ fn values(bytes: &[u8]) -> impl Iterator<Item = f32> {
 
 /// That of all bytes but the checksum's own.
 fn checksum(bytes: &[u8]) -> u32 {
-    Crc::new().add(first(bytes, CHECKSUM)).add(from(bytes, HEADER_BYTES)).finish()
+    crc([first(bytes, CHECKSUM), from(bytes, HEADER_BYTES)])
 }
 
-/// Takes fields off the front of bytes.
-struct Reader<'a>(&'a [u8]);
-
-impl Reader<'_> {
-    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let (field, rest) = self.0.split_first_chunk()?;
-        self.0 = rest;
-        Some(*field)
-    }
+fn field<const N: usize>(bytes: &[u8], at: usize) -> Result<[u8; N], Error> {
+    from(bytes, at).first_chunk().copied().ok_or(Error::Length)
 }

@@ -1,10 +1,11 @@
 //! Several tables drawn as one: each process of a data-parallel trainer owns the table of its part of the data.
 
-use super::draw::{CHUNK, check_lengths};
+use super::draw::{CHUNK, check_lengths, noise};
 use super::importances::Table;
 use super::kernel::Kernel;
-use super::mixture::Mixture;
+use super::mixture::{Mixture, parts};
 use crate::error::{Error, check_part};
+use crate::real::Real;
 use crate::rng::Rng;
 
 /// What the others must know of one process's table: 16 bytes that all processes exchange before a draw.
@@ -44,14 +45,9 @@ impl Shard {
     ///
     /// Errors: [`Error::NoSamples`] if nothing can be drawn.
     fn ways(&self, all: &Shard, uniform_fraction: f64) -> Result<(f64, f64), Error> {
-        let by_items = self.items as f64 / all.items as f64;
-        match (all.importance > 0.0, uniform_fraction > 0.0) {
-            (true, _) => {
-                Ok(((1.0 - uniform_fraction) * (self.importance / all.importance), uniform_fraction * by_items))
-            }
-            (false, true) => Ok((0.0, by_items)),
-            (false, false) => Err(Error::NoSamples),
-        }
+        let (tree, uniform) = parts(all.importance > 0.0, uniform_fraction)?;
+        let part = (self.importance / all.importance.or_one(), self.items as f64 / all.items as f64);
+        Ok((tree * part.0, uniform * part.1))
     }
 }
 
@@ -86,16 +82,16 @@ pub fn allocate(
     }
     let all = Shard::sum(shards.clone())?;
     let fraction = f64::from(uniform_fraction);
-    all.ways(&all, fraction)?;
+    let share = |shard: Shard| shard.ways(&all, fraction).map(|(tree, uniform)| tree + uniform);
+    share(all)?;
     let offset = rng.uniform_f64();
     let mut end = 0.0;
     let mut before = 0;
     // The last shard that can be drawn from takes what rounding leaves.
-    let possible = |shard: Shard| shard.ways(&all, fraction).is_ok_and(|(tree, uniform)| tree + uniform > 0.0);
-    let last = shards.clone().enumerate().filter(|&(_, shard)| possible(shard)).map(|(i, _)| i).last();
+    let possible = |&(_, shard): &(usize, Shard)| share(shard).is_ok_and(|share| share > 0.0);
+    let last = shards.clone().enumerate().filter(possible).map(|(i, _)| i).last();
     for (i, (shard, count)) in shards.zip(counts).enumerate() {
-        let (tree, uniform) = shard.ways(&all, fraction)?;
-        end += tree + uniform;
+        end += share(shard)?;
         // How many of the points offset, offset + 1, ... lie before the shard's end.
         let until = match last.is_some_and(|last| i < last) {
             // Not `clamp`, which can panic.
@@ -150,7 +146,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
             return Err(Error::NoSamples);
         }
         let mixture = Mixture::of(self.sum(), self.state.items, uniform / share)?;
-        self.draw_mixture::<CHUNK>(&mixture, share * all.items as f64, rng, index, weight);
+        self.draw_mixture::<CHUNK>(&mixture, share * all.items as f64, rng, index, weight, noise);
         Ok(())
     }
 }

@@ -54,17 +54,6 @@ impl Levels {
     }
 }
 
-/// How many children end at or before `r`: the child that `r`, below the node's weight, falls on. Never one of
-/// weight 0.
-#[inline]
-pub(super) fn find(node: &Node, r: i64) -> usize {
-    let mut count = 0;
-    for &end in node {
-        count += i64::from(end <= r);
-    }
-    count as usize
-}
-
 /// Where a child begins and ends.
 #[inline]
 pub(super) fn span(node: &Node, child: usize) -> (i64, i64) {
@@ -73,14 +62,10 @@ pub(super) fn span(node: &Node, child: usize) -> (i64, i64) {
     (begin, node[child % CHILDREN])
 }
 
-/// Changes a child's weight by `difference`.
 #[inline]
-pub(super) fn add(node: &mut Node, child: usize, difference: i64) {
-    let mut ends = *node;
-    for (i, end) in ends.iter_mut().enumerate() {
-        *end = end.wrapping_add(if i >= child { difference } else { 0 });
-    }
-    *node = ends;
+pub(super) fn weight(node: &Node, child: usize) -> i64 {
+    let (begin, end) = span(node, child);
+    end.wrapping_sub(begin)
 }
 
 /// Changes each child's weight by its difference.

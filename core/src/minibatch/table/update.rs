@@ -1,17 +1,17 @@
 //! Changing importances.
 
-use super::block::{ARITY, Block};
-use super::importances::{Table, check_importances, power_of_two};
-use super::kernel::{Kernel, Portable};
+use super::importances::{Table, check_importances};
+use super::kernel::{ARITY, Block, Kernel, Portable, prefetch};
 use super::tree::{self, CHILDREN, Node};
 use crate::error::{Error, check_part};
+use crate::real::power_of_two;
 use crate::rows::{first_mut, from};
 
 /// How many changes go up the tree together.
 const CHUNK: usize = 64;
 /// A scale is chosen so that the sum has this many bits: room to grow by a factor of 2^11, and to shrink by 2^6 with
 /// the most items there can be, by 2^18 with a million.
-const BITS: i64 = 51;
+const BITS: i32 = 51;
 /// The sum stays below this.
 const LARGEST_SUM: i64 = 1 << 62;
 /// The sum stays above this times the number of blocks, so that rounding a block's weight changes little.
@@ -43,10 +43,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
         for (index, importance) in index.chunks(CHUNK).zip(importance.chunks(CHUNK)) {
             for &item in index {
                 let which = item as usize / ARITY;
-                if let (Some(block), Some(node)) = (self.blocks().get(which), self.nodes().get(which / CHILDREN)) {
-                    K::prefetch(block);
-                    K::prefetch(node);
-                }
+                prefetch::<K, _>(self.blocks(), which);
+                prefetch::<K, _>(self.nodes(), which / CHILDREN);
             }
             let mix = |&q: &f32| move |old: f32| (momentum * old + fresh * q + 0.0).min(f32::MAX);
             in_range &= self.change(index.iter().copied().zip(importance.iter().map(mix)));
@@ -129,8 +127,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
             let q = change(block[item]);
             let weight = weight(K::replace(block, item, q), scale);
             fresh = fresh.saturating_add(weight);
-            let (begin, end) = tree::span(node, which % CHILDREN);
-            let difference = weight.wrapping_sub(end.wrapping_sub(begin));
+            let difference = weight.wrapping_sub(tree::weight(node, which % CHILDREN));
             K::add(node, which % CHILDREN, difference);
             *pending = ((which / CHILDREN) as u32, difference);
             count += 1;
@@ -174,15 +171,10 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
         let sum: f64 = self.blocks().iter().take(self.used()).map(Portable::total).sum();
         if sum > 0.0 {
             // Between 2^-149 and 2^160: the exponent of a normal f64.
-            let exponent = (sum.to_bits() >> 52) as i64 - 1023;
+            let exponent = (sum.to_bits() >> 52) as i32 - 1023;
             self.state.scale = power_of_two(BITS - 1 - exponent);
         }
-        self.rebuild_at_scale();
-    }
-
-    /// Builds the sums at the scale there is. False if they are beyond their range.
-    pub(super) fn rebuild_at_scale(&mut self) -> bool {
-        self.build::<Portable>()
+        self.build::<Portable>();
     }
 
     /// How many blocks have items. Those behind them are room, and weigh nothing.
@@ -190,9 +182,9 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
         (self.state.items as usize).div_ceil(ARITY)
     }
 
-    /// All sums. False if they are beyond their range.
+    /// Builds the sums at the scale there is. False if they are beyond their range.
     #[inline]
-    fn build<By: Kernel>(&mut self) -> bool {
+    pub(super) fn build<By: Kernel>(&mut self) -> bool {
         let (levels, scale, used) = (self.levels, self.state.scale, self.used());
         let (blocks, nodes) = self.parts();
         let blocks = first_mut(blocks, used);
