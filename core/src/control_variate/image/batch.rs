@@ -8,9 +8,10 @@ use super::call::{Call, Layout};
 use super::groups::{Group, Groups, Place};
 use super::pixels::Image;
 use super::products::{
-    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sliced, Sums, add_products, minus, only, plus, plus_four,
+    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sums, add_products, minus, only, plus, plus_four,
     product, times, total, zip_four,
 };
+use super::sliced::Sliced;
 use super::terms::{MAX_AXES, Terms};
 use crate::arena::Arena;
 use crate::error::Error;

@@ -102,10 +102,10 @@ impl<'a> Fits<'a> {
     /// The same by fits to slices apart.
     #[inline(always)]
     pub(super) fn correct_slices(&mut self, batch: &Batch<'_>, colour: usize) {
-        let Some(apart) = &mut self.apart else { return };
+        let Some(several) = self.apart.as_mut().and_then(|apart| apart.several.as_mut()) else { return };
         let mut left = [NONE; 2 * Config::MAX_CHANNELS * MAX_FITS];
         for block in batch.blocks(Colours(1 << colour)) {
-            apart.correct(batch, block, self.corrections, &mut left);
+            several.correct(batch, block, self.corrections, &mut left);
         }
         let fits = batch.terms.ends.len();
         for (value, (whole, left)) in batch.within.part(colour).squares.iter().zip(rows(&left, fits)).enumerate() {

@@ -38,6 +38,8 @@ mod passes;
 mod pixels;
 mod products;
 mod read;
+mod several;
+mod sliced;
 mod slices;
 mod steps;
 mod sums;

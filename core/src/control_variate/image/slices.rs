@@ -8,9 +8,9 @@
 //! the difference. Of several samples in each pixel, each counts as much as one of another pixel would: less the
 //! pixel's mean, as other fits count them, they would be of several slices at once.
 
-use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED};
-use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Rows, Sums, minus, only, panels, plus, product};
+use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, minus, only, plus, product};
+use super::several::Several;
 use super::terms::{SINGULAR, Terms, scale};
 use crate::arena::Arena;
 use crate::error::Error;
@@ -42,21 +42,15 @@ pub(super) struct Apart<'a> {
     gathered: &'a mut [Eight],
     /// L^-1 of a row's columns; coefficients while these are made.
     solved: &'a mut [Eight],
-    /// A block's shared columns, or those of four samples of its pixels.
+    /// A block's shared columns.
     columns: &'a mut [Four],
-    samples: Rows<'a>,
-    /// Of a pixel's samples, for each lane panels of values and their candidates: sums of what is fitted, of what that
-    /// leaves of how far values are from the first, and of squares of this.
-    explained: &'a mut [[Eight; 3]],
-    /// How far a sample's values are from the first, by the same panels.
-    apart: &'a mut [Eight],
-    /// The coefficients of each lane, slice and column, by the same panels.
-    spread: &'a mut [Eight],
     /// For each value and candidate those of the fixed columns.
     trends: &'a mut [Eight],
     /// For each value, candidate and slice, what shared columns are multiplied by at a sample of the slice. The fixed
     /// ones are without what all slices have in common.
     coefficients: &'a mut [Eight],
+    /// Of several samples in each pixel.
+    pub(super) several: Option<Several<'a>>,
 }
 
 /// Puts a row together, each lane of another's.
@@ -75,18 +69,6 @@ fn symmetric(triangle: &[Eight], i: usize, k: usize) -> Eight {
     at(triangle, packed_len(i.max(k)) + i.min(k))
 }
 
-/// What a fit is at samples, but for what all slices have in common: of the lane's slice each.
-#[inline(always)]
-fn fitted_at(columns: &[Four], line: usize, of: &[&[Eight]; LANES], gathered: &mut [Eight]) -> Eight {
-    gather(gathered, of);
-    let mut fitted = NONE;
-    for (column, coefficient) in columns.iter().zip(gathered) {
-        fitted = lanes::plus_product(fitted, column[line % AT_ONCE], *coefficient);
-        lanes::keep_together();
-    }
-    fitted
-}
-
 impl<'a> Apart<'a> {
     /// Rows of a slice's block.
     fn order(terms: &Terms, values: usize) -> usize {
@@ -102,18 +84,13 @@ impl<'a> Apart<'a> {
         let each = Sums::len(width, values) + order * terms.all_own();
         let coefficients = values * terms.ends.len() * (terms.fixed() + slices * width);
         let border = packed_len(width) + (values + terms.fixed()) * width;
-        let panels = if n > 1 { panels(values * terms.ends.len()) } else { 0 };
-        let samples = AT_ONCE * (width + terms.functions + values) + panels * (3 * LANES + 1 + LANES * slices * width);
-        slices * each + border + order * (1 + terms.all_own()) + width + samples + coefficients
+        let several = if n > 1 { Several::len(terms, values) } else { 0 };
+        slices * each + border + order * (1 + terms.all_own()) + width + AT_ONCE * width + coefficients + several
     }
 
     pub(super) fn new(terms: &Terms, values: usize, n: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
         let (slices, width, order) = (terms.slices, terms.columns(), Self::order(terms, values));
         let fits = terms.ends.len();
-        let panels = if n > 1 { panels(values * fits) } else { 0 };
-        let spread = arena.take_lanes(LANES * slices * width * panels)?;
-        // What a candidate does not use stays 0.
-        spread.iter_mut().for_each(|coefficients| *coefficients = NONE);
         Ok(Self {
             width,
             own: 0,
@@ -124,12 +101,9 @@ impl<'a> Apart<'a> {
             gathered: arena.take_lanes(order * terms.all_own() + width)?,
             solved: arena.take_lanes(order)?,
             columns: arena.take_fours(width)?,
-            samples: Rows::new(terms.functions, values, arena)?,
-            explained: arena.take_lanes(3 * LANES * panels)?.as_chunks_mut().0,
-            apart: arena.take_lanes(panels)?,
-            spread,
             trends: arena.take_lanes(values * fits * terms.fixed())?,
             coefficients: arena.take_lanes(values * fits * slices * width)?,
+            several: if n > 1 { Some(Several::new(terms, values, arena)?) } else { None },
         })
     }
 
@@ -157,83 +131,8 @@ impl<'a> Apart<'a> {
             }
             begin = fit + 1;
         }
-        if batch.call.n > 1 {
-            self.spread_out(terms, batch.values);
-        }
-    }
-
-    /// Lays coefficients out for samples of several slices.
-    #[inline(always)]
-    fn spread_out(&mut self, terms: &Terms, values: usize) {
-        let (columns, count, slices) = (terms.columns(), terms.ends.len(), terms.slices);
-        let panels = panels(values * count);
-        for which in 0..values * count {
-            let end = at(&terms.ends, which % count);
-            for (slice, row) in rows(row_at(self.coefficients, slices * columns, which), columns).enumerate() {
-                for lane in 0..LANES {
-                    let out = row_at_mut(self.spread, columns, (lane * slices + slice) * panels + which / LANES);
-                    for (out, coefficient) in out.iter_mut().zip(first(row, end)) {
-                        out[which % LANES] = coefficient[lane];
-                    }
-                }
-            }
-        }
-    }
-
-    /// Corrects a block's pixels of several samples, which the fits have not seen, and adds to `left` for each value
-    /// and candidate what the fits leave of the samples about their pixels' means.
-    #[inline(always)]
-    pub(super) fn correct(&mut self, batch: &Batch<'_>, block: usize, corrections: &mut [Four], left: &mut [Eight]) {
-        let (terms, call, count) = (&batch.terms, batch.call, batch.terms.ends.len());
-        let (columns, panels) = (terms.columns(), panels(batch.values * count));
-        let inverse = 1.0 / call.n as f32;
-        for slot in 0..AT_ONCE {
-            self.explained.iter_mut().for_each(|sums| *sums = [NONE; 3]);
-            let mut firsts = [NONE; 2 * Config::MAX_CHANNELS];
-            for begin in (0..call.n).step_by(AT_ONCE) {
-                let lines = AT_ONCE.min(call.n - begin);
-                call.read(batch, (block, slot..slot + 1), begin..begin + lines, &mut self.samples);
-                batch.put_samples((block, slot), &[[1.0; LANES]; AT_ONCE], self.samples.columns, self.columns);
-                if begin == 0 {
-                    firsts.iter_mut().zip(&*self.samples.values).for_each(|(first, values)| *first = values[0]);
-                }
-                let picked = call.slices(&self.samples);
-                for (line, slices) in picked.iter().enumerate().take(lines) {
-                    for (lane, explained) in rows_mut(self.explained, panels).enumerate() {
-                        let values = self.samples.values.iter().zip(&firsts);
-                        for ((value, first), out) in values.zip(rows_mut(self.apart.as_flattened_mut(), count)) {
-                            out.fill(value[line][lane % LANES] - first[lane % LANES]);
-                        }
-                        let slice = lane * terms.slices + slices[lane % LANES] as usize;
-                        let coefficients = row_at(self.spread, columns * panels, slice);
-                        for (panel, ([sum, rest, squares], value)) in
-                            explained.iter_mut().zip(self.apart.iter()).enumerate()
-                        {
-                            let mut fitted = NONE;
-                            for (column, coefficient) in self.columns.iter().zip(row_at(coefficients, columns, panel)) {
-                                let column = [column[line][lane % LANES]; LANES];
-                                fitted = lanes::plus_product(fitted, column, *coefficient);
-                                lanes::keep_together();
-                            }
-                            let left = minus(value, &fitted);
-                            (*sum, *rest) = (plus(sum, &fitted), plus(rest, &left));
-                            *squares = lanes::plus_product(*squares, left, left);
-                        }
-                    }
-                }
-            }
-            let inside = at(batch.inside, block)[slot];
-            for (which, left) in left.iter_mut().enumerate().take(batch.values * count) {
-                let row = row_at_mut(corrections, terms.candidates(), block * batch.values + which / count);
-                let Some(out) = row.get_mut(which % count) else { return };
-                for (lane, explained) in rows(self.explained, panels).enumerate() {
-                    let [sum, rest, squares] = at(explained, which / LANES).map(|sums| sums[which % LANES]);
-                    out[slot][lane % LANES] = sum * -inverse;
-                    if inside[lane % LANES] > 0.0 {
-                        left[lane % LANES] += squares - rest * inverse * rest;
-                    }
-                }
-            }
+        if let Some(several) = &mut self.several {
+            several.set(terms, batch.values, self.coefficients);
         }
     }
 
@@ -424,7 +323,13 @@ impl<'a> Apart<'a> {
                     let which = value * count + fit;
                     let all = from(self.coefficients, which * terms.slices * terms.columns());
                     let of = slices.map(|slice| row_at(all, terms.columns(), slice));
-                    let fitted = fitted_at(self.columns, line, &of, first_mut(self.gathered, end));
+                    let coefficients = first_mut(self.gathered, end);
+                    gather(coefficients, &of);
+                    let mut fitted = NONE;
+                    for (column, coefficient) in self.columns.iter().zip(&*coefficients) {
+                        fitted = lanes::plus_product(fitted, column[line], *coefficient);
+                        lanes::keep_together();
+                    }
                     let mut trend = NONE;
                     for (place, coefficient) in places.iter().zip(row_at(self.trends, fixed, which)) {
                         trend = lanes::plus_product(trend, place[line], *coefficient);

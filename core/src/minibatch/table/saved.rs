@@ -48,6 +48,9 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
 ///
 /// Errors: [`Error::Length`] for less than a header, [`Error::Foreign`] for other bytes, [`Error::Version`].
 pub fn saved_items(bytes: &[u8]) -> Result<u32, Error> {
+    if bytes.len() < HEADER_BYTES {
+        return Err(Error::Length);
+    }
     let (magic, version) = (field(bytes, 0)?, u32::from_le_bytes(field(bytes, 8)?));
     let items = u32::from_le_bytes(field(bytes, 12)?);
     // Comparing arrays may call bcmp, which a freestanding target need not have.

@@ -1,0 +1,127 @@
+//! Fits to slices at several samples in each pixel.
+//!
+//! A pixel's samples are of several slices. So lanes are not of groups here, but of values and candidates: they share a
+//! sample's slice, and the coefficients of one are together.
+
+use super::super::config::Config;
+use super::batch::Batch;
+use super::products::{AT_ONCE, Eight, Four, NONE, Rows, minus, plus};
+use super::sliced::panels;
+use super::terms::Terms;
+use crate::arena::Arena;
+use crate::error::Error;
+use crate::lanes::{self, LANES};
+use crate::matrix::{at, row_at, row_at_mut};
+use crate::rows::{first, rows, rows_mut};
+
+/// A panel is eight of the values' candidates.
+pub(super) struct Several<'a> {
+    /// Columns and functions at four samples of a pixel, and their values.
+    columns: &'a mut [Four],
+    samples: Rows<'a>,
+    /// Of a pixel's samples, for each group and panel: sums of what is fitted, of what that leaves of how far values
+    /// are from the first, and of squares of this.
+    explained: &'a mut [[Eight; 3]],
+    /// How far a sample's values are from the first.
+    apart: &'a mut [Eight],
+    /// For each group, slice, panel and column.
+    coefficients: &'a mut [Eight],
+}
+
+impl<'a> Several<'a> {
+    /// Lanes of workspace.
+    pub(super) fn len(terms: &Terms, values: usize) -> usize {
+        let panels = panels(values * terms.ends.len());
+        let samples = AT_ONCE * (terms.columns() + terms.functions + values);
+        samples + panels * (3 * LANES + 1 + LANES * terms.slices * terms.columns())
+    }
+
+    pub(super) fn new(terms: &Terms, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+        let panels = panels(values * terms.ends.len());
+        let coefficients = arena.take_lanes(LANES * terms.slices * panels * terms.columns())?;
+        // What a candidate does not use stays 0.
+        coefficients.iter_mut().for_each(|coefficients| *coefficients = NONE);
+        Ok(Self {
+            columns: arena.take_fours(terms.columns())?,
+            samples: Rows::new(terms.functions, values, arena)?,
+            explained: arena.take_lanes(3 * LANES * panels)?.as_chunks_mut().0,
+            apart: arena.take_lanes(panels)?,
+            coefficients,
+        })
+    }
+
+    /// Sets the coefficients, which are given for each value, candidate, slice and column.
+    #[inline(always)]
+    pub(super) fn set(&mut self, terms: &Terms, values: usize, coefficients: &[Eight]) {
+        let (columns, count, slices) = (terms.columns(), terms.ends.len(), terms.slices);
+        let panels = panels(values * count);
+        for which in 0..values * count {
+            let end = at(&terms.ends, which % count);
+            for (slice, row) in rows(row_at(coefficients, slices * columns, which), columns).enumerate() {
+                for lane in 0..LANES {
+                    let out = row_at_mut(self.coefficients, columns, (lane * slices + slice) * panels + which / LANES);
+                    for (out, coefficient) in out.iter_mut().zip(first(row, end)) {
+                        out[which % LANES] = coefficient[lane];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Corrects a block's pixels of several samples, which the fits have not seen, and adds to `left` for each value
+    /// and candidate what the fits leave of the samples about their pixels' means.
+    #[inline(always)]
+    pub(super) fn correct(&mut self, batch: &Batch<'_>, block: usize, corrections: &mut [Four], left: &mut [Eight]) {
+        let (terms, call, count) = (&batch.terms, batch.call, batch.terms.ends.len());
+        let (columns, panels) = (terms.columns(), panels(batch.values * count));
+        let inverse = 1.0 / call.n as f32;
+        for slot in 0..AT_ONCE {
+            self.explained.iter_mut().for_each(|sums| *sums = [NONE; 3]);
+            let mut firsts = [NONE; 2 * Config::MAX_CHANNELS];
+            for begin in (0..call.n).step_by(AT_ONCE) {
+                let lines = AT_ONCE.min(call.n - begin);
+                call.read(batch, (block, slot..slot + 1), begin..begin + lines, &mut self.samples);
+                batch.put_samples((block, slot), &[[1.0; LANES]; AT_ONCE], self.samples.columns, self.columns);
+                if begin == 0 {
+                    firsts.iter_mut().zip(&*self.samples.values).for_each(|(first, values)| *first = values[0]);
+                }
+                let picked = call.slices(&self.samples);
+                for (line, slices) in picked.iter().enumerate().take(lines) {
+                    for (lane, explained) in rows_mut(self.explained, panels).enumerate() {
+                        let values = self.samples.values.iter().zip(&firsts);
+                        for ((value, first), out) in values.zip(rows_mut(self.apart.as_flattened_mut(), count)) {
+                            out.fill(value[line][lane % LANES] - first[lane % LANES]);
+                        }
+                        let slice = lane * terms.slices + slices[lane % LANES] as usize;
+                        let coefficients = row_at(self.coefficients, columns * panels, slice);
+                        for (panel, ([sum, rest, squares], value)) in
+                            explained.iter_mut().zip(self.apart.iter()).enumerate()
+                        {
+                            let mut fitted = NONE;
+                            for (column, coefficient) in self.columns.iter().zip(row_at(coefficients, columns, panel)) {
+                                let column = [column[line][lane % LANES]; LANES];
+                                fitted = lanes::plus_product(fitted, column, *coefficient);
+                                lanes::keep_together();
+                            }
+                            let left = minus(value, &fitted);
+                            (*sum, *rest) = (plus(sum, &fitted), plus(rest, &left));
+                            *squares = lanes::plus_product(*squares, left, left);
+                        }
+                    }
+                }
+            }
+            let inside = at(batch.inside, block)[slot];
+            for (which, left) in left.iter_mut().enumerate().take(batch.values * count) {
+                let row = row_at_mut(corrections, terms.candidates(), block * batch.values + which / count);
+                let Some(out) = row.get_mut(which % count) else { return };
+                for (lane, explained) in rows(self.explained, panels).enumerate() {
+                    let [sum, rest, squares] = at(explained, which / LANES).map(|sums| sums[which % LANES]);
+                    out[slot][lane % LANES] = sum * -inverse;
+                    if inside[lane % LANES] > 0.0 {
+                        left[lane % LANES] += squares - rest * inverse * rest;
+                    }
+                }
+            }
+        }
+    }
+}
