@@ -1,11 +1,9 @@
 //! Checked views of matrices, over memory that somebody else owns.
 //!
-//! A view is made of a slice that is long enough, which is checked there and nowhere else. What lies outside reads as
-//! zero or as an empty row, so formulas over views have no index that could be out of bounds.
+//! What lies outside reads as zero or as an empty row, so formulas over views have no index that could be out of bounds.
 //!
 //! `S` is `&[T]` or `&mut [T]`.
 
-use crate::error::Error;
 use crate::real::Real;
 use crate::rows::{Rows, part, part_mut, rows, rows_mut};
 pub(crate) use crate::rows::{at, first_mut, from, from_mut, halves_mut, row_at, row_at_mut};
@@ -59,11 +57,9 @@ pub(crate) struct Triangle<S> {
 type Split<'a, T> = (Triangle<&'a [T]>, &'a mut [T], &'a mut T);
 
 impl<T, S: Deref<Target = [T]>> Triangle<S> {
-    /// # Errors
-    /// [`Error::Memory`] if `entries` are too few.
     #[inline]
-    pub(crate) fn new(entries: S, order: usize) -> Result<Self, Error> {
-        if entries.len() < packed_len(order) { Err(Error::Memory) } else { Ok(Self { entries, order }) }
+    pub(crate) fn new(entries: S, order: usize) -> Self {
+        Self { entries, order }
     }
 
     #[inline]

@@ -59,10 +59,9 @@ impl Term {
     }
 }
 
-/// Sets `terms` to every multi-index of degree 1 to `order` over `dims` coordinates, degree by degree; None if there
-/// are too many. Columns `dims..dims + gap` are left free for the slices' indicators.
+/// Adds to no `terms` every multi-index of degree 1 to `order` over `dims` coordinates, degree by degree; None if there
+/// is no room for more. Columns `dims..dims + gap` are left free for the slices' indicators.
 pub(crate) fn total_degree(dims: usize, order: usize, gap: usize, terms: &mut Vec<Term, MAX_TERMS>) -> Option<()> {
-    terms.clear();
     let column = |index: usize| u8::try_from(if index < dims { index } else { index + gap }).ok();
     // The columns of the one-dimensional functions, by coordinate and degree.
     let mut pure = [[CONSTANT; MAX_ORDER + 1]; MAX_DIMS];

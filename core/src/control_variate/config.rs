@@ -239,6 +239,12 @@ impl Config {
         if self.stride == 0 { self.dims } else { self.stride }
     }
 
+    /// How many values of a sample are regressed: its channels, or its luminance.
+    #[inline]
+    pub(crate) fn regressed(&self) -> usize {
+        if self.color == Color::LuminanceRatio { 1 } else { self.channels }
+    }
+
     #[inline]
     pub(crate) fn fold_count(&self) -> NonZeroUsize {
         NonZeroUsize::new(self.folds).unwrap_or(FOLDS)

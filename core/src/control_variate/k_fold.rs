@@ -42,18 +42,18 @@ pub(crate) fn estimate<R: Real>(
 ) -> Result<Outcome<R>, Error> {
     let channels = whole.channels;
     let [mut totals, mut squares, mut inflations] = [PerChannel::default(); 3];
-    let coefficients = arena.take(whole.columns * channels)?;
+    let coefficients = arena.take(whole.columns * channels);
     for index in 0..config.fold_count().get() {
         let fold = Fold::new(index, config.fold_count(), reader.len());
         let mut arena = arena.scratch();
-        let held_out = load(reader, basis, whole.columns, Subset::Fold(fold), false, &mut arena)?;
+        let held_out = load(reader, basis, whole.columns, Subset::Fold(fold), false, &mut arena);
         let Some(held_out) = held_out else { continue };
-        let train = load(reader, basis, whole.columns, Subset::Complement(fold), true, &mut arena)?;
+        let train = load(reader, basis, whole.columns, Subset::Complement(fold), true, &mut arena);
         coefficients.fill(R::ZERO);
         let mut inflation = PerChannel::all(R::ONE);
         if let Some(train) = train.filter(|train| train.n > 1) {
             let plan = Plan::new(config, basis.columns(), train.n)?;
-            let blend = fitter::fit(&train, config, basis, &plan, Some(coefficients), &mut arena)?;
+            let blend = fitter::fit(&train, config, basis, &plan, Some(coefficients), &mut arena);
             inflation = blend.inflation(R::from_usize(train.n));
             // Everything meets in the units of all samples, which are the largest.
             let units = train.units.iter().zip(&whole.units);
@@ -87,7 +87,7 @@ pub(crate) fn estimate<R: Real>(
     Ok(Outcome { correction, variance: Some(variance) })
 }
 
-/// [`Design::load`], of which the two callers share one copy; None without a sample.
+/// [`Design::load`], of which the two callers share one copy.
 #[inline(never)]
 fn load<'a, R: Real>(
     reader: &Reader<'_>,
@@ -96,9 +96,6 @@ fn load<'a, R: Real>(
     subset: Subset,
     centre: bool,
     arena: &mut Arena<'a, R>,
-) -> Result<Option<Design<'a, R>>, Error> {
-    match Design::load(reader, basis, columns, subset, centre, arena) {
-        Err(Error::NoSamples) => Ok(None),
-        design => design.map(Some),
-    }
+) -> Option<Design<'a, R>> {
+    Design::load(reader, basis, columns, subset, centre, arena)
 }

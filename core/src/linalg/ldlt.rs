@@ -123,7 +123,7 @@ impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
 #[inline(always)]
 pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
     let tolerance = R::from_f64(DEPENDENT) * R::EPSILON;
-    let Ok(mut matrices) = Triangle::new(matrices, n) else { return };
+    let mut matrices = Triangle::new(matrices, n);
     for j in 0..n {
         let Some((l, row, diagonal)) = matrices.split(j) else { return };
         for k in 0..j {
@@ -146,7 +146,7 @@ pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
 /// X := L^-1 X for eight systems side by side, of `N` right-hand sides each; rows before `first` are zero and stay so.
 #[inline(always)]
 pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first: usize, x: &mut [[Lanes<R>; N]]) {
-    let Ok(factors) = Triangle::new(factors, x.len()) else { return };
+    let factors = Triangle::new(factors, x.len());
     for (j, row) in factors.rows().enumerate().skip(first) {
         let Some((before, x_j)) = split_at(x, j) else { return };
         let mut sums = *x_j;
@@ -178,7 +178,7 @@ pub(crate) fn one_each_mut<R>(x: &mut [Lanes<R>]) -> &mut [[Lanes<R>; 1]] {
 #[inline]
 pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
     forward_each::<R, 1>(factors, 0, one_each_mut(x));
-    let Ok(pivots) = Triangle::new(factors, x.len()) else { return };
+    let pivots = Triangle::new(factors, x.len());
     for (j, x_j) in x.iter_mut().enumerate() {
         *x_j = lanes::zip(x_j, &pivots.diagonal(j), |x_j, inverse| x_j * inverse);
     }
@@ -188,7 +188,7 @@ pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
 /// X := L'^-1 X for eight systems side by side.
 #[inline]
 pub(crate) fn backward_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
-    let Ok(factors) = Triangle::new(factors, x.len()) else { return };
+    let factors = Triangle::new(factors, x.len());
     for j in (0..x.len()).rev() {
         let Some((before, &mut x_j)) = split_at(x, j) else { return };
         for (x, l) in before.iter_mut().zip(factors.left(j)) {

@@ -30,7 +30,12 @@ const ADAM_DECAY: [f64; 2] = [0.9, 0.999];
 /// Rounds of power iteration for the largest curvature, which bounds the step.
 const POWER_ROUNDS: usize = 12;
 
-/// Numbers that a descent takes from its arena, its solution included.
+/// Numbers that a descent in arrays takes from its arena.
+pub(crate) fn batch_size<R: Real>(n: usize, columns: usize, channels: usize) -> Option<usize> {
+    Design::<R>::size(n, columns, channels)?.checked_add(size(columns, channels))
+}
+
+/// The same without a design, its solution included.
 pub(crate) fn size(columns: usize, channels: usize) -> usize {
     columns * (channels + 5)
 }
@@ -79,8 +84,7 @@ pub fn estimate_from<R: Real>(
     coefficients: &mut [f32],
     workspace: &mut [R],
 ) -> Result<Estimate, Error> {
-    let mut basis = Basis::empty();
-    basis.set(config.basis, config.checked_shape()?)?;
+    let basis = Basis::of(config.basis, config.checked_shape()?);
     let reader = Reader::new(config, samples)?;
     Plan::new(config, basis.columns(), reader.len())?;
     let columns = config.controls + basis.columns();
@@ -91,15 +95,16 @@ pub fn estimate_from<R: Real>(
         return Err(Error::NotFinite);
     }
     reader.check()?;
-    let mut arena = Arena::new(workspace);
-    let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena)?;
-    let solutions = arena.take(coefficients.len())?;
+    let needed = batch_size::<R>(reader.len(), columns, reader.channels());
+    let mut arena = Arena::new(workspace, needed.ok_or(Error::Memory)?)?;
+    let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena).ok_or(Error::NoSamples)?;
+    let solutions = arena.take(coefficients.len());
     let unit = |index: usize| at(&design.units, index / columns.max(1));
     for (index, (out, &value)) in solutions.iter_mut().zip(&*coefficients).enumerate() {
         *out = unit(index).stored_length(value);
     }
     let plain = result::plain_variance(&design);
-    let outcome = descend(&design, config, &basis, solutions, plain, &mut arena)?;
+    let outcome = descend(&design, config, &basis, solutions, plain, &mut arena);
     for (index, (out, &value)) in coefficients.iter_mut().zip(&*solutions).enumerate() {
         *out = result::saturate(unit(index).length(value));
     }
@@ -117,10 +122,10 @@ pub(crate) fn descend<R: Real>(
     coefficients: &mut [R],
     plain: Option<PerChannel<R>>,
     arena: &mut Arena<'_, R>,
-) -> Result<Outcome<R>, Error> {
+) -> Outcome<R> {
     let columns = objective.means().len();
-    let (gradient, first, second) = (arena.take(columns)?, arena.take(columns)?, arena.take(columns)?);
-    let (scales, units) = (arena.take(columns)?, arena.take(columns)?);
+    let (gradient, first, second) = (arena.take(columns), arena.take(columns), arena.take(columns));
+    let (scales, units) = (arena.take(columns), arena.take(columns));
     let n = R::from_usize(objective.count());
     // One for the basis, and one over a control function's size, whose unit is its maker's; zero for one that does not
     // move.
@@ -173,7 +178,7 @@ pub(crate) fn descend<R: Real>(
             variance[channel] = own + rest * rest;
         }
     }
-    Ok(outcome)
+    outcome
 }
 
 /// What a sum of squared residuals of a descent is multiplied by to be a variance; None if no residual is left over to

@@ -3,7 +3,6 @@
 use super::super::design::Design;
 use super::{Fit, Penalty, SMALLEST_GAP};
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt::Ldlt;
 use crate::matrix::{Panel, Triangle, at, copy};
@@ -24,10 +23,10 @@ pub(crate) fn len(n: usize, channels: usize) -> Option<usize> {
 
 impl<'a, R: Real> Dual<'a, R> {
     #[inline]
-    pub(crate) fn new(design: &Design<'_, R>, penalties: &[R], arena: &mut Arena<'a, R>) -> Result<Self, Error> {
+    pub(crate) fn new(design: &Design<'_, R>, penalties: &[R], arena: &mut Arena<'a, R>) -> Self {
         let padded = design.n.next_multiple_of(LANES);
-        let mut kernel = arena.triangle(padded)?;
-        let shift = arena.zeros(padded)?;
+        let mut kernel = arena.triangle(padded);
+        let shift = arena.zeros(padded);
         for (a, ((left, _), shift)) in design.each_panel().zip(shift.chunks_exact_mut(LANES)).enumerate() {
             for (b, (right, _)) in design.each_panel().enumerate().take(a + 1) {
                 let mut tile = [[R::ZERO; LANES]; LANES];
@@ -50,7 +49,7 @@ impl<'a, R: Real> Dual<'a, R> {
                 }
             }
         }
-        Ok(Self { kernel, shift })
+        Self { kernel, shift }
     }
 
     /// The fit with ridge strength s over all columns. With B = K + s n I,
@@ -64,15 +63,15 @@ impl<'a, R: Real> Dual<'a, R> {
         leave_one_out: bool,
         coefficients: Option<&mut [R]>,
         mut arena: Arena<'_, R>,
-    ) -> Result<Fit<R>, Error> {
+    ) -> Fit<R> {
         let n = design.n;
         let count = R::from_usize(n);
         let inverse_n = R::ONE / count;
         let strength = penalty.strength * count;
-        let mut matrix = arena.triangle(n)?;
-        let inverse = arena.triangle(n)?;
-        let (diagonal, shift) = (arena.take(n)?, arena.take(n)?);
-        let mut alpha = Panel::new(arena.take(n * design.channels)?, n);
+        let mut matrix = arena.triangle(n);
+        let inverse = arena.triangle(n);
+        let (diagonal, shift) = (arena.take(n), arena.take(n));
+        let mut alpha = Panel::new(arena.take(n * design.channels), n);
         copy(matrix.entries_mut(), self.kernel.entries());
         // K annihilates 1, so B^-1 holds 11'/(s n) beside which all else is small for a small strength s. With
         // c 11'/n added to B, c = tr K / n, that part is 11'/((s + c) n), and f and g, orthogonal to 1, see no change.
@@ -138,6 +137,6 @@ impl<'a, R: Real> Dual<'a, R> {
                 }
             }
         }
-        Ok(fit)
+        fit
     }
 }

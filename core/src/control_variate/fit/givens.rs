@@ -7,7 +7,6 @@ use super::super::ridge;
 use super::super::sums::{Layout, Sums, not_below_zero};
 use crate::arena::Arena;
 use crate::basis::Basis;
-use crate::error::Error;
 use crate::linalg::givens;
 use crate::matrix::{at, copy, first_mut, from_mut};
 use crate::real::Real;
@@ -31,10 +30,10 @@ pub(crate) fn least_squares<R: Real>(
     config: &Config,
     basis: &Basis,
     arena: &mut Arena<'_, R>,
-) -> Result<Outcome<R>, Error> {
+) -> Outcome<R> {
     let (layout, terms) = (sums.layout(), sums.gram.order());
-    let mut system = layout.group_mut(arena.zeros(layout.len())?, 0)?;
-    let (x, solution, penalties) = (arena.take(terms)?, arena.take(terms)?, arena.zeros(terms)?);
+    let mut system = layout.group_mut(arena.zeros(layout.len()), 0);
+    let (x, solution, penalties) = (arena.take(terms), arena.take(terms), arena.zeros(terms));
     copy(system.gram.entries_mut(), sums.gram.entries());
     for (out, rhs) in system.rhs.rows_mut().zip(sums.rhs.rows()) {
         copy(out, rhs);
@@ -69,7 +68,7 @@ pub(crate) fn least_squares<R: Real>(
     unit(x, 0, R::ONE);
     let eccentricity = not_below_zero(count * givens::inverse_square(&system.gram.view(), x) - R::ONE);
     let variance = result::residual_variance(residuals, layout.columns, count, eccentricity);
-    Ok(Outcome { correction, variance })
+    Outcome { correction, variance }
 }
 
 /// x := `value` e_j

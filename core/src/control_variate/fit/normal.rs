@@ -9,7 +9,6 @@ use super::super::trust::Centre;
 use super::descent::Objective;
 use super::{Fit, Penalty, SMALLEST_GAP};
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::ldlt::Ldlt;
 use crate::matrix::{Panel, Triangle, copy, packed_len, row_at};
@@ -41,17 +40,17 @@ impl<'a, R: Real> Normal<'a, R> {
     /// Of the samples of a design.
     // Without, estimates of one pixel take 9 to 14 % more instructions.
     #[inline(always)]
-    pub(crate) fn of(design: &Design<'a, R>, arena: &mut Arena<'a, R>) -> Result<Self, Error> {
-        let mut gram = arena.triangle(design.columns)?;
-        let mut rhs = Panel::new(arena.take(design.columns * design.channels)?, design.columns);
+    pub(crate) fn of(design: &Design<'a, R>, arena: &mut Arena<'a, R>) -> Self {
+        let mut gram = arena.triangle(design.columns);
+        let mut rhs = Panel::new(arena.take(design.columns * design.channels), design.columns);
         design.normal_equations(&mut gram, &mut rhs);
-        Ok(Self { count: R::from_usize(design.n), gram, rhs, means: design.column_means })
+        Self { count: R::from_usize(design.n), gram, rhs, means: design.column_means }
     }
 
     /// P'P + L, factored.
     #[inline(always)]
-    fn factor<'f>(&self, penalty: Penalty<'_, R>, arena: &mut Arena<'f, R>) -> Result<Ldlt<&'f mut [R]>, Error> {
-        let mut matrix = arena.triangle(self.gram.order())?;
+    fn factor<'f>(&self, penalty: Penalty<'_, R>, arena: &mut Arena<'f, R>) -> Ldlt<&'f mut [R]> {
+        let mut matrix = arena.triangle(self.gram.order());
         copy(matrix.entries_mut(), self.gram.entries());
         let strength = penalty.strength * self.count;
         for (j, &relative) in penalty.relative.iter().enumerate() {
@@ -59,7 +58,7 @@ impl<'a, R: Real> Normal<'a, R> {
                 *diagonal += strength * relative;
             }
         }
-        Ok(Ldlt::new(matrix))
+        Ldlt::new(matrix)
     }
 
     #[inline(always)]
@@ -70,12 +69,12 @@ impl<'a, R: Real> Normal<'a, R> {
         leave_one_out: bool,
         coefficients: Option<&mut [R]>,
         mut arena: Arena<'_, R>,
-    ) -> Result<Fit<R>, Error> {
+    ) -> Fit<R> {
         let columns = self.gram.order();
-        let factor = self.factor(penalty, &mut arena)?;
-        let means = arena.take(columns)?;
-        let mut solution = Panel::new(arena.take(columns * design.channels)?, columns);
-        let z = arena.take_lanes(columns)?;
+        let factor = self.factor(penalty, &mut arena);
+        let means = arena.take(columns);
+        let mut solution = Panel::new(arena.take(columns * design.channels), columns);
+        let z = arena.take_lanes(columns);
         // Everything below lives in the coordinates z = L^-1 p, where A^-1 is diagonal.
         copy(means, self.means);
         factor.forward(means);
@@ -97,7 +96,7 @@ impl<'a, R: Real> Normal<'a, R> {
                 factor.backward(out);
             }
         }
-        Ok(fit)
+        fit
     }
 
     /// Writes the coefficients of a fit, a row for each channel, and returns the factored matrix.
@@ -107,21 +106,21 @@ impl<'a, R: Real> Normal<'a, R> {
         penalty: Penalty<'_, R>,
         coefficients: &mut [R],
         arena: &mut Arena<'f, R>,
-    ) -> Result<Ldlt<&'f mut [R]>, Error> {
-        let factor = self.factor(penalty, arena)?;
+    ) -> Ldlt<&'f mut [R]> {
+        let factor = self.factor(penalty, arena);
         for (out, rhs) in Panel::new(coefficients, self.gram.order()).rows_mut().zip(self.rhs.rows()) {
             copy(out, rhs);
             factor.solve(out);
         }
-        Ok(factor)
+        factor
     }
 
     /// n sum_i (m'A^-1 p_i)^2 = n x'P'P x for x = A^-1 m.
-    pub(crate) fn eccentricity(&self, factor: &Ldlt<&mut [R]>, arena: &mut Arena<'_, R>) -> Result<R, Error> {
-        let x = arena.take(self.gram.order())?;
+    pub(crate) fn eccentricity(&self, factor: &Ldlt<&mut [R]>, arena: &mut Arena<'_, R>) -> R {
+        let x = arena.take(self.gram.order());
         copy(x, self.means);
         factor.solve(x);
-        Ok(not_below_zero(self.gram.quadratic(x)) * self.count)
+        not_below_zero(self.gram.quadratic(x)) * self.count
     }
 
     /// Where the samples of a fit lie.
@@ -130,9 +129,9 @@ impl<'a, R: Real> Normal<'a, R> {
         factor: &Ldlt<&mut [R]>,
         penalty: Penalty<'_, R>,
         mut arena: Arena<'_, R>,
-    ) -> Result<Centre<R>, Error> {
+    ) -> Centre<R> {
         let columns = self.gram.order();
-        let (inverse, diagonal) = (arena.triangle(columns)?, arena.take(columns)?);
+        let (inverse, diagonal) = (arena.triangle(columns), arena.take(columns));
         factor.inverse_diagonal(inverse, diagonal);
         // tr(A^-1 P'P) = columns - tr(A^-1 L).
         let strength = penalty.strength * self.count;
@@ -140,8 +139,8 @@ impl<'a, R: Real> Normal<'a, R> {
         for (&value, &relative) in diagonal.iter().zip(penalty.relative) {
             freedom -= strength * value * relative;
         }
-        let eccentricity = self.eccentricity(factor, &mut arena)?;
-        Ok(Centre::new(eccentricity, freedom, self.count))
+        let eccentricity = self.eccentricity(factor, &mut arena);
+        Centre::new(eccentricity, freedom, self.count)
     }
 }
 
@@ -229,27 +228,27 @@ pub(crate) fn least_squares<R: Real>(
     sums: &Sums<&[R]>,
     penalty: Penalty<'_, R>,
     arena: &mut Arena<'_, R>,
-) -> Result<Outcome<R>, Error> {
+) -> Outcome<R> {
     let Layout { columns, channels, .. } = sums.layout();
-    let coefficients = arena.take(columns * channels)?;
-    let centred = Centred::new(sums, arena)?;
-    let factor = centred.normal.solve(penalty, coefficients, arena)?;
-    let eccentricity = centred.normal.eccentricity(&factor, arena)?;
+    let coefficients = arena.take(columns * channels);
+    let centred = Centred::new(sums, arena);
+    let factor = centred.normal.solve(penalty, coefficients, arena);
+    let eccentricity = centred.normal.eccentricity(&factor, arena);
     // Its residuals have mean zero: its intercept is the estimate.
     let correction = centred.intercepts(coefficients) - centred.value_means;
     let b = |channel| row_at(coefficients, columns, channel);
     let residual = PerChannel::of(channels, |channel| centred.residual_square(channel, b(channel)));
     let variance = result::residual_variance(residual, columns, centred.normal.count, eccentricity);
-    Ok(Outcome { correction, variance })
+    Outcome { correction, variance }
 }
 
 impl<'a, R: Real> Centred<'a, R> {
     /// Centres a group of sums that holds samples.
-    pub(crate) fn new(sums: &Sums<&[R]>, arena: &mut Arena<'a, R>) -> Result<Self, Error> {
+    pub(crate) fn new(sums: &Sums<&[R]>, arena: &mut Arena<'a, R>) -> Self {
         let Layout { columns, channels, .. } = sums.layout();
-        let mut gram = arena.triangle(columns)?;
-        let mut rhs = Panel::new(arena.take(columns * channels)?, columns);
-        let means = arena.take(columns)?;
+        let mut gram = arena.triangle(columns);
+        let mut rhs = Panel::new(arena.take(columns * channels), columns);
+        let means = arena.take(columns);
         let count = sums.count();
         let inverse = R::ONE / count;
         for (j, mean) in means.iter_mut().enumerate() {
@@ -284,7 +283,7 @@ impl<'a, R: Real> Centred<'a, R> {
                 *value = R::ZERO;
             }
         }
-        Ok(Self { normal: Normal { count, gram, rhs, means }, value_means, squares })
+        Self { normal: Normal { count, gram, rhs, means }, value_means, squares }
     }
 
     /// The intercepts that go with coefficients, a row for each channel.

@@ -133,13 +133,11 @@ pub fn estimate_image_by<P: Processor>(
         return Err(Error::Range);
     }
     let layout = layout.of(n);
-    let mut basis = Basis::empty();
-    basis.set(config.basis, layout.shape)?;
+    let basis = Basis::of(config.basis, layout.shape);
     reader.check()?;
-    if workspace.len() < layout.workspace_len().ok_or(Error::Memory)? {
-        return Err(Error::Memory);
-    }
-    Call { layout, basis: &basis, reader }.run::<P>(&mut Arena::new(workspace), out)
+    let mut arena = Arena::new(workspace, layout.workspace_len().ok_or(Error::Memory)?)?;
+    Call { layout, basis: &basis, reader }.run::<P>(&mut arena, out);
+    Ok(())
 }
 
 impl<'a> Layout<'a> {

@@ -11,7 +11,6 @@ use super::batch::{Batch, MAX_FIXED};
 use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, minus, only, plus, product};
 use super::terms::{SINGULAR, Terms, scale};
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
 use crate::matrix::{at, copy, first_mut, from, halves_mut, packed_len, row, row_at, row_at_mut, row_mut, split_at};
@@ -81,22 +80,22 @@ impl<'a> Apart<'a> {
         slices * each + border + order * (1 + terms.all_own()) + width + AT_ONCE * width + coefficients
     }
 
-    pub(super) fn new(terms: &Terms, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+    pub(super) fn new(terms: &Terms, values: usize, arena: &mut Arena<'a, f32>) -> Self {
         let (slices, width, order) = (terms.slices, terms.columns(), Self::order(terms, values));
         let fits = terms.ends.len();
-        Ok(Self {
+        Self {
             width,
             own: 0,
-            totals: Sums::new(slices, width, values, arena)?,
-            blocks: arena.take_lanes(slices * order * terms.all_own())?,
-            border: arena.take_lanes(packed_len(width))?,
-            sides: arena.take_lanes((values + terms.fixed()) * width)?,
-            gathered: arena.take_lanes(order * terms.all_own() + width)?,
-            solved: arena.take_lanes(order)?,
-            columns: arena.take_fours(width)?,
-            trends: arena.take_lanes(values * fits * terms.fixed())?,
-            coefficients: arena.take_lanes(values * fits * slices * width)?,
-        })
+            totals: Sums::new(slices, width, values, arena),
+            blocks: arena.take_lanes(slices * order * terms.all_own()),
+            border: arena.take_lanes(packed_len(width)),
+            sides: arena.take_lanes((values + terms.fixed()) * width),
+            gathered: arena.take_lanes(order * terms.all_own() + width),
+            solved: arena.take_lanes(order),
+            columns: arena.take_fours(width),
+            trends: arena.take_lanes(values * fits * terms.fixed()),
+            coefficients: arena.take_lanes(values * fits * slices * width),
+        }
     }
 
     /// Corrects every pixel of the colours `taken` by fits to the others of them.
