@@ -5,8 +5,8 @@
 //! `S` is `&[T]` or `&mut [T]`.
 
 use crate::real::Real;
-use crate::rows::{Rows, part, part_mut, rows, rows_mut};
 pub(crate) use crate::rows::{at, first_mut, from, from_mut, halves_mut, row_at, row_at_mut};
+use crate::rows::{part, part_mut, rows, rows_mut};
 use core::ops::{Deref, DerefMut};
 
 /// The count of numbers in a packed triangle of `order` rows.
@@ -56,7 +56,7 @@ pub(crate) struct Triangle<S> {
 /// The rows before row j, row j left of the diagonal, and the entry there.
 type Split<'a, T> = (Triangle<&'a [T]>, &'a mut [T], &'a mut T);
 
-impl<T, S: Deref<Target = [T]>> Triangle<S> {
+impl<T: 'static, S: Deref<Target = [T]>> Triangle<S> {
     #[inline]
     pub(crate) fn new(entries: S, order: usize) -> Self {
         Self { entries, order }
@@ -93,10 +93,7 @@ impl<T, S: Deref<Target = [T]>> Triangle<S> {
 
     /// The rows from the first on.
     #[inline]
-    pub(crate) fn rows<'a>(&'a self) -> impl Iterator<Item = &'a [T]>
-    where
-        T: 'a,
-    {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = &[T]> {
         let mut rest: &[T] = &self.entries;
         (1..=self.order).map_while(move |len| {
             let (row, after) = rest.split_at_checked(len)?;
@@ -106,7 +103,7 @@ impl<T, S: Deref<Target = [T]>> Triangle<S> {
     }
 }
 
-impl<T: Copy + Default, S: Deref<Target = [T]>> Triangle<S> {
+impl<T: Copy + Default + 'static, S: Deref<Target = [T]>> Triangle<S> {
     /// Entry (j, k), k <= j.
     #[inline]
     pub(crate) fn at(&self, j: usize, k: usize) -> T {
@@ -145,7 +142,7 @@ impl<R: Real, S: Deref<Target = [R]>> Triangle<S> {
     }
 }
 
-impl<T, S: DerefMut<Target = [T]>> Triangle<S> {
+impl<T: 'static, S: DerefMut<Target = [T]>> Triangle<S> {
     #[inline]
     pub(crate) fn entries_mut(&mut self) -> &mut [T] {
         &mut self.entries
@@ -198,7 +195,7 @@ pub(crate) struct Panel<S> {
     width: usize,
 }
 
-impl<T, S: Deref<Target = [T]>> Panel<S> {
+impl<T: 'static, S: Deref<Target = [T]>> Panel<S> {
     /// The whole rows of `width` entries.
     #[inline]
     pub(crate) fn new(entries: S, width: usize) -> Self {
@@ -217,21 +214,18 @@ impl<T, S: Deref<Target = [T]>> Panel<S> {
     }
 
     #[inline]
-    pub(crate) fn rows(&self) -> Rows<&[T]> {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = &[T]> {
         rows(&self.entries, self.width)
     }
 
     /// The entries at place `j` of every row.
     #[inline]
-    pub(crate) fn column<'a>(&'a self, j: usize) -> impl Iterator<Item = &'a T>
-    where
-        T: 'a,
-    {
+    pub(crate) fn column(&self, j: usize) -> impl Iterator<Item = &T> {
         self.rows().filter_map(move |row| row.get(j))
     }
 }
 
-impl<T: Copy + Default, S: Deref<Target = [T]>> Panel<S> {
+impl<T: Copy + Default + 'static, S: Deref<Target = [T]>> Panel<S> {
     /// Entry (i, j).
     #[inline]
     pub(crate) fn at(&self, i: usize, j: usize) -> T {
@@ -239,22 +233,19 @@ impl<T: Copy + Default, S: Deref<Target = [T]>> Panel<S> {
     }
 }
 
-impl<T, S: DerefMut<Target = [T]>> Panel<S> {
+impl<T: 'static, S: DerefMut<Target = [T]>> Panel<S> {
     #[inline]
     pub(crate) fn row_mut(&mut self, i: usize) -> &mut [T] {
         row_at_mut(&mut self.entries, self.width, i)
     }
 
     #[inline]
-    pub(crate) fn rows_mut(&mut self) -> Rows<&mut [T]> {
+    pub(crate) fn rows_mut(&mut self) -> impl Iterator<Item = &mut [T]> {
         rows_mut(&mut self.entries, self.width)
     }
 
     #[inline]
-    pub(crate) fn column_mut<'a>(&'a mut self, j: usize) -> impl Iterator<Item = &'a mut T>
-    where
-        T: 'a,
-    {
+    pub(crate) fn column_mut(&mut self, j: usize) -> impl Iterator<Item = &mut T> {
         self.rows_mut().filter_map(move |row| row.get_mut(j))
     }
 }

@@ -1,49 +1,25 @@
 //! Parts of slices, and rows of matrices that are stored row after row. What lies outside reads as zero, or as an empty
 //! part, so that no index can be out of bounds: the sizes are checked where memory comes in.
 
+use core::iter;
+
 /// The whole rows of `width` entries, none of no width, for which `chunks_exact` and its length panic.
-#[derive(Clone)]
-pub(crate) struct Rows<S> {
-    rest: S,
-    width: usize,
+#[inline]
+pub(crate) fn rows<T>(mut rest: &[T], width: usize) -> impl Iterator<Item = &[T]> + Clone {
+    iter::from_fn(move || {
+        let (row, after) = rest.split_at_checked(width).filter(|_| width > 0)?;
+        rest = after;
+        Some(row)
+    })
 }
 
 #[inline]
-pub(crate) fn rows<T>(rest: &[T], width: usize) -> Rows<&[T]> {
-    Rows { rest, width }
-}
-
-#[inline]
-pub(crate) fn rows_mut<T>(rest: &mut [T], width: usize) -> Rows<&mut [T]> {
-    Rows { rest, width }
-}
-
-impl<'a, T> Iterator for Rows<&'a [T]> {
-    type Item = &'a [T];
-
-    #[inline]
-    fn next(&mut self) -> Option<&'a [T]> {
-        if self.width == 0 {
-            return None;
-        }
-        let (row, rest) = self.rest.split_at_checked(self.width)?;
-        self.rest = rest;
+pub(crate) fn rows_mut<T>(mut rest: &mut [T], width: usize) -> impl Iterator<Item = &mut [T]> {
+    iter::from_fn(move || {
+        let (row, after) = core::mem::take(&mut rest).split_at_mut_checked(width).filter(|_| width > 0)?;
+        rest = after;
         Some(row)
-    }
-}
-
-impl<'a, T> Iterator for Rows<&'a mut [T]> {
-    type Item = &'a mut [T];
-
-    #[inline]
-    fn next(&mut self) -> Option<&'a mut [T]> {
-        if self.width == 0 || self.rest.len() < self.width {
-            return None;
-        }
-        let (row, rest) = core::mem::take(&mut self.rest).split_at_mut_checked(self.width)?;
-        self.rest = rest;
-        Some(row)
-    }
+    })
 }
 
 /// Row `index` of `width` entries.

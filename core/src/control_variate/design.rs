@@ -95,20 +95,16 @@ impl<'a, R: Real> Design<'a, R> {
         let mut x = [[R::ZERO; LANES]; MAX_DIMS];
         let mut h = [[R::ZERO; LANES]; Config::MAX_CONTROLS];
         let mut f = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
-        let (mut column_panels, mut value_panels) = (panels.rows_mut(), values.rows_mut());
         let (mut next, mut n) = (0, 0);
-        loop {
+        for index in 0..count {
             // Lanes that are not filled hold an earlier panel's samples, in range; they are cleared below.
             let filled = reader.panel(subset, &mut next, &mut x, &mut h, &mut f);
             if filled == 0 {
                 break;
             }
             n += filled;
-            if let Some(panel) = column_panels.next() {
-                reader.columns(basis, &x, &h, panel);
-            }
-            let values = value_panels.next().into_iter().flatten();
-            for (((out, f), &factor), unit) in values.zip(&f).zip(&factors).zip(&units) {
+            reader.columns(basis, &x, &h, panels.row_mut(index));
+            for (((out, f), &factor), unit) in values.row_mut(index).iter_mut().zip(&f).zip(&factors).zip(&units) {
                 *out = f.map(|f| f * factor - unit.offset);
             }
         }

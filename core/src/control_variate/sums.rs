@@ -56,18 +56,18 @@ impl Layout {
     }
 
     /// Group `index`.
-    pub(crate) fn group<'a, R>(&self, sums: &'a [R], index: usize) -> Sums<&'a [R]> {
+    pub(crate) fn group<'a, R: Real>(&self, sums: &'a [R], index: usize) -> Sums<&'a [R]> {
         self.parts(row_at(sums, self.len(), index), halves)
     }
 
     /// Group `index`, to be changed.
     #[inline]
-    pub(crate) fn group_mut<'a, R>(&self, sums: &'a mut [R], index: usize) -> Sums<&'a mut [R]> {
+    pub(crate) fn group_mut<'a, R: Real>(&self, sums: &'a mut [R], index: usize) -> Sums<&'a mut [R]> {
         self.parts(row_at_mut(sums, self.len(), index), halves_mut)
     }
 
     #[inline]
-    fn parts<R, S: Deref<Target = [R]>>(&self, group: S, halves: impl Fn(S, usize) -> (S, S)) -> Sums<S> {
+    fn parts<R: Real, S: Deref<Target = [R]>>(&self, group: S, halves: impl Fn(S, usize) -> (S, S)) -> Sums<S> {
         let (gram, rest) = halves(group, packed_len(self.terms()));
         let (rhs, square) = halves(rest, self.terms() * self.channels);
         let (gram, rhs) = (Triangle::new(gram, self.terms()), Panel::new(rhs, self.channels));

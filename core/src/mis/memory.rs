@@ -6,7 +6,7 @@
 
 use super::linear::MAX_TECHNIQUES;
 use crate::matrix::packed_len;
-use crate::rows::{Rows, rows, rows_mut};
+use crate::rows::rows;
 
 /// The f64 that [`OptimalMis`](super::OptimalMis) needs; 0 if `techniques` is not in 1..=16, `integrals` is 0, or no
 /// memory could hold them.
@@ -41,7 +41,7 @@ pub(super) struct SumsMut<'a> {
     pub(super) ratio: &'a mut [f64],
     pub(super) matrix: &'a mut [f64],
     /// Of each integral balance, progressive and moment.
-    pub(super) records: Rows<&'a mut [f64]>,
+    pub(super) records: &'a mut [f64],
 }
 
 /// The sums of one integral.
@@ -75,10 +75,10 @@ impl<'a> SumsMut<'a> {
         let (samples, rest) = sums.split_first_mut()?;
         let (ratio, rest) = rest.split_at_mut_checked(techniques)?;
         let (matrix, records) = rest.split_at_mut_checked(packed_len(techniques))?;
-        Some(SumsMut { samples, ratio, matrix, records: rows_mut(records, record_len(techniques)) })
+        Some(SumsMut { samples, ratio, matrix, records })
     }
 }
 
-const fn record_len(techniques: usize) -> usize {
+pub(super) const fn record_len(techniques: usize) -> usize {
     2 + techniques
 }

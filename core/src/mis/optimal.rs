@@ -13,7 +13,7 @@
 //! the balance estimate less what the samples got wrong about the densities' integrals, each of which is 1.
 
 use super::linear::{self, MAX_TECHNIQUES, System, Vector};
-use super::memory::{Sums, SumsMut, len, sums_len};
+use super::memory::{Sums, SumsMut, len, record_len, sums_len};
 use super::solver::Solver;
 use crate::error::{Error, check_part};
 use crate::real::saturate;
@@ -191,7 +191,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         *sums.samples += 1.0;
         sums.ratio.iter_mut().zip(&ratio).for_each(|(sum, ratio)| *sum += ratio);
         linear::add_products(sums.matrix, first(&ratio, techniques), 1.0);
-        let of_integrals = sums.records.zip(rows(alphas, techniques));
+        let of_integrals = rows_mut(sums.records, record_len(techniques)).zip(rows(alphas, techniques));
         for (&value, (record, alpha)) in value.iter().zip(of_integrals) {
             let [balance, progressive, moment @ ..] = record else { break };
             let value = f64::from(value) / sum;
