@@ -167,7 +167,8 @@ impl<R: Real> Accumulator<R> {
         let reader = Reader::new(&self.config, samples)?;
         reader.check()?;
         self.check_capacity(reader.len() as u64)?;
-        let (basis, terms) = (Basis::of(self.config.basis, self.shape), self.layout.terms());
+        let basis = Basis::of(self.config.basis, self.shape);
+        let terms = self.layout.terms();
         let mut p = [[R::ZERO]; MAX_TERMS];
         p[0] = [R::ONE];
         let mut x = [[R::ZERO; 1]; MAX_DIMS];
