@@ -11,13 +11,13 @@ pub(crate) struct Arena<'a, R> {
 }
 
 impl<'a, R: Real> Arena<'a, R> {
-    /// Of a buffer that `needed` numbers will be taken from.
+    /// Of a buffer that `needed` numbers will be taken from, None for more than there can be.
     ///
     /// # Errors
-    /// [`Error::Memory`] if there are fewer.
+    /// [`Error::Memory`] if it has fewer.
     #[inline]
-    pub(crate) fn new(buffer: &'a mut [R], needed: usize) -> Result<Self, Error> {
-        if buffer.len() < needed { Err(Error::Memory) } else { Ok(Self { rest: buffer }) }
+    pub(crate) fn new(buffer: &'a mut [R], needed: Option<usize>) -> Result<Self, Error> {
+        if needed.is_some_and(|needed| needed <= buffer.len()) { Ok(Self { rest: buffer }) } else { Err(Error::Memory) }
     }
 
     /// The next `len` numbers, with whatever they held.

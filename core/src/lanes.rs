@@ -13,11 +13,6 @@ pub(crate) const LANES: usize = 8;
 /// One value for each of eight samples.
 pub(crate) type Lanes<R, const L: usize = LANES> = [R; L];
 
-#[inline]
-pub(crate) fn splat<R: Real, const L: usize>(value: R) -> Lanes<R, L> {
-    [value; L]
-}
-
 // Always inlined, and so before anything else is: what is inlined later is scalar in places.
 
 // The operations copy their operands before they store: compilers then know that no store changes an operand, without
@@ -109,7 +104,7 @@ pub(crate) fn dot<R: Real>(a: &[R], b: &[R]) -> R {
     let (b_panels, b_rest) = b.as_chunks::<LANES>();
     let mut total = R::ZERO;
     if !a_panels.is_empty() {
-        let mut partial = splat(R::ZERO);
+        let mut partial = [R::ZERO; LANES];
         for (a, b) in a_panels.iter().zip(b_panels) {
             partial = plus_product(partial, *a, *b);
         }

@@ -73,12 +73,6 @@ impl<T: 'static, S: Deref<Target = [T]>> Triangle<S> {
         &self.entries
     }
 
-    /// The same, to be read.
-    #[inline]
-    pub(crate) fn view(&self) -> Triangle<&[T]> {
-        Triangle { entries: &self.entries, order: self.order }
-    }
-
     /// Row `j`, diagonal included.
     #[inline]
     pub(crate) fn row(&self, j: usize) -> &[T] {
@@ -200,11 +194,6 @@ impl<T: 'static, S: Deref<Target = [T]>> Panel<S> {
     #[inline]
     pub(crate) fn new(entries: S, width: usize) -> Self {
         Self { entries, width }
-    }
-
-    #[inline]
-    pub(crate) fn view(&self) -> Panel<&[T]> {
-        Panel { entries: &self.entries, width: self.width }
     }
 
     /// Row `i`.

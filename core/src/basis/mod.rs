@@ -158,19 +158,26 @@ impl Basis {
     /// # Errors
     /// [`Error::Range`] if a number is out of range or the terms, constant included, would exceed [`MAX_TERMS`].
     pub fn new(family: Family, dims: usize, order: usize, slices: usize) -> Result<Self, Error> {
-        Ok(Self::of(family, Shape::new(dims, order, slices)?))
+        let mut basis = Self::empty();
+        basis.set(family, Shape::new(dims, order, slices)?);
+        Ok(basis)
     }
 
-    /// Of a shape that was checked.
+    /// A basis of no functions, to be set.
     #[inline]
-    pub(crate) fn of(family: Family, shape: Shape) -> Self {
-        // A basis is a few kilobytes, which are better not moved.
-        let mut basis = Self { family, shape, terms: Vec::new(), gaussians: None };
-        terms::total_degree(shape.continuous, shape.order, shape.indicators(), &mut basis.terms);
+    pub(crate) fn empty() -> Self {
+        Self { family: Family::Legendre, shape: Shape::default(), terms: Vec::new(), gaussians: None }
+    }
+
+    /// Makes it, that was empty, one of a shape that was checked. A basis is a few kilobytes, which are better not
+    /// moved.
+    #[inline]
+    pub(crate) fn set(&mut self, family: Family, shape: Shape) {
+        (self.family, self.shape) = (family, shape);
+        terms::total_degree(shape.continuous, shape.order, shape.indicators(), &mut self.terms);
         if family == Family::Gaussian {
-            basis.gaussians = Some(Gaussians::new(shape.continuous, shape.shared));
+            self.gaussians = Some(Gaussians::new(shape.continuous, shape.shared));
         }
-        basis
     }
 
     /// How many functions there are; the constant is not one of them.

@@ -47,7 +47,7 @@ impl Term {
     ) -> Lanes<R, L> {
         // The constant is no column: reading past the end gives it.
         let [a, b] = self.sources;
-        let constant = lanes::splat(R::ONE);
+        let constant = [R::ONE; L];
         // Behind a black box, or compilers choose anew for every lane.
         let a = black_box(columns.get(usize::from(a)).unwrap_or(&constant));
         let b = black_box(columns.get(usize::from(b)).unwrap_or(&constant));

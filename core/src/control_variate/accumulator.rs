@@ -167,7 +167,8 @@ impl<R: Real> Accumulator<R> {
         let reader = Reader::new(&self.config, samples)?;
         reader.check()?;
         self.check_capacity(reader.len() as u64)?;
-        let basis = Basis::of(self.config.basis, self.shape);
+        let mut basis = Basis::empty();
+        basis.set(self.config.basis, self.shape);
         let terms = self.layout.terms();
         let mut p = [[R::ZERO]; MAX_TERMS];
         p[0] = [R::ONE];
@@ -269,7 +270,7 @@ impl<R: Real> Accumulator<R> {
         if self.samples == 0 {
             return Err(Error::NoSamples);
         }
-        let (summary, arena) = (self.summary(sums), &mut Arena::new(workspace, self.needed())?);
+        let (summary, arena) = (self.summary(sums), &mut Arena::new(workspace, Some(self.needed()))?);
         // From an estimate in the sums' units.
         let correcting = |of: Outcome<R>| Outcome { correction: of.correction - summary.mean, ..of };
         let outcome = match self.method {
@@ -298,7 +299,9 @@ impl<R: Real> Accumulator<R> {
 
     #[inline(never)]
     fn basis(&self) -> Basis {
-        Basis::of(self.config.basis, self.shape)
+        let mut basis = Basis::empty();
+        basis.set(self.config.basis, self.shape);
+        basis
     }
 
     fn cross_fit(&self, sums: &[R], summary: &Summary<R>, arena: &mut Arena<'_, R>) -> Outcome<R> {

@@ -85,12 +85,12 @@ pub fn estimate_inlined<R: Real>(
     if matches!(Method::of(config, config.controls + shape.columns()), Method::Incremental | Method::SquareRoot) {
         return streamed(config, samples, workspace);
     }
-    let basis = Basis::of(config.basis, shape);
+    let mut basis = Basis::empty();
+    basis.set(config.basis, shape);
     let reader = Reader::new(config, samples)?;
     let plan = Plan::new(config, shape.columns(), reader.len())?;
     reader.check()?;
-    let needed = size::<R>(config, &plan, reader.len());
-    let mut arena = Arena::new(workspace, needed.ok_or(Error::Memory)?)?;
+    let mut arena = Arena::new(workspace, size::<R>(config, &plan, reader.len()))?;
     let design = Design::load(&reader, &basis, plan.columns, Subset::All, true, &mut arena).ok_or(Error::NoSamples)?;
     let outcome = match plan.method {
         _ if design.n == 1 => Outcome::default(),

@@ -7,10 +7,8 @@ use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::lanes::{self, LANES, Lanes};
 use crate::matrix::{Panel, Triangle, first_mut, from};
-use crate::real::Real;
-
-/// The size of a control function about its mean, in epsilons of its size about zero, that is rounding noise.
-const NOISE: f64 = 64.0;
+use crate::real::{Real, rounding};
+use core::ops::Deref;
 
 /// The design matrix and the values, eight samples to a panel. Unused lanes of the last panel are zero.
 pub(crate) struct Design<'a, R> {
@@ -96,18 +94,22 @@ impl<'a, R: Real> Design<'a, R> {
         let mut h = [[R::ZERO; LANES]; Config::MAX_CONTROLS];
         let mut f = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
         let (mut next, mut n) = (0, 0);
-        for index in 0..count {
+        let mut column_panels = panels.rows_mut();
+        for values in values.rows_mut() {
             // Lanes that are not filled hold an earlier panel's samples, in range; they are cleared below.
             let filled = reader.panel(subset, &mut next, &mut x, &mut h, &mut f);
             if filled == 0 {
                 break;
             }
             n += filled;
-            reader.columns(basis, &x, &h, panels.row_mut(index));
-            for (((out, f), &factor), unit) in values.row_mut(index).iter_mut().zip(&f).zip(&factors).zip(&units) {
+            if let Some(panel) = column_panels.next() {
+                reader.columns(basis, &x, &h, panel);
+            }
+            for (((out, f), &factor), unit) in values.iter_mut().zip(&f).zip(&factors).zip(&units) {
                 *out = f.map(|f| f * factor - unit.offset);
             }
         }
+        drop(column_panels);
         if n == 0 {
             return None;
         }
@@ -190,7 +192,7 @@ fn put<R: Real>(row: &mut [R], first: usize, sums: &[Lanes<R>; 2]) {
 
 /// The sum of squares of group `index` of every panel.
 #[inline]
-pub(crate) fn square<R: Real>(panels: &Panel<&[Lanes<R>]>, index: usize) -> R {
+pub(crate) fn square<R: Real>(panels: &Panel<impl Deref<Target = [Lanes<R>]>>, index: usize) -> R {
     let mut total = [R::ZERO; LANES];
     for values in panels.column(index) {
         total = lanes::plus_product(total, *values, *values);
@@ -219,8 +221,8 @@ fn centre<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means: &mut [R
 /// the values.
 fn clear_constant<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means: &[R], integrals: &[f32]) {
     for (j, (&mean, &integral)) in means.iter().zip(integrals).enumerate() {
-        let noise = R::from_f64(NOISE) * R::EPSILON * (mean.abs() + R::from_f32(integral).abs());
-        if (square(&panels.view(), j) / R::from_usize(n)).sqrt() <= noise {
+        let noise = rounding::<R>() * (mean.abs() + R::from_f32(integral).abs());
+        if (square(panels, j) / R::from_usize(n)).sqrt() <= noise {
             for column in panels.column_mut(j) {
                 *column = [R::ZERO; LANES];
             }

@@ -105,12 +105,14 @@ impl<R: Real> Progress<R> {
         let strengths = STRENGTHS.map(|own| R::from_f64(ridge::strength::<R>(config.ridge, own / samples as f64)));
         let sums = layout.group(sums, 0);
         // The buffer was measured for this.
-        let Ok(mut arena) = Arena::new(rest, len(layout)) else { return };
+        let Ok(mut arena) = Arena::new(rest, Some(len(layout))) else { return };
         let coefficients = arena.take(FITS * layout.coefficients());
         let penalties = arena.take(layout.columns);
         if self.next_fit == 0 || config.controls > 0 {
             // They stay in the buffer: only those of control functions depend on the samples.
-            ridge::penalties(config, &Basis::of(config.basis, shape), |j| sums.mean_square(j), penalties);
+            let mut basis = Basis::empty();
+            basis.set(config.basis, shape);
+            ridge::penalties(config, &basis, |j| sums.mean_square(j), penalties);
         }
         let centred = Centred::new(&sums, &mut arena);
         let fits = rows_mut(coefficients, layout.coefficients()).zip(strengths).zip(&mut self.intercepts);

@@ -113,7 +113,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         // Enough whatever the sizes are.
         let mut workspace = [[[0.0; TERMS]; TERMS]; 4];
         let needed = normal::len(self.sums().layout());
-        let arena = &mut Arena::new(workspace.as_flattened_mut().as_flattened_mut(), needed)?;
+        let arena = &mut Arena::new(workspace.as_flattened_mut().as_flattened_mut(), Some(needed))?;
         Ok(summary.finish(normal::least_squares(&self.sums(), penalty, arena)))
     }
 

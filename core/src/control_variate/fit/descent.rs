@@ -30,12 +30,7 @@ const ADAM_DECAY: [f64; 2] = [0.9, 0.999];
 /// Rounds of power iteration for the largest curvature, which bounds the step.
 const POWER_ROUNDS: usize = 12;
 
-/// Numbers that a descent in arrays takes from its arena.
-pub(crate) fn batch_size<R: Real>(n: usize, columns: usize, channels: usize) -> Option<usize> {
-    Design::<R>::size(n, columns, channels)?.checked_add(size(columns, channels))
-}
-
-/// The same without a design, its solution included.
+/// Numbers that a descent takes from its arena, its solution included.
 pub(crate) fn size(columns: usize, channels: usize) -> usize {
     columns * (channels + 5)
 }
@@ -84,7 +79,8 @@ pub fn estimate_from<R: Real>(
     coefficients: &mut [f32],
     workspace: &mut [R],
 ) -> Result<Estimate, Error> {
-    let basis = Basis::of(config.basis, config.checked_shape()?);
+    let mut basis = Basis::empty();
+    basis.set(config.basis, config.checked_shape()?);
     let reader = Reader::new(config, samples)?;
     Plan::new(config, basis.columns(), reader.len())?;
     let columns = config.controls + basis.columns();
@@ -95,8 +91,9 @@ pub fn estimate_from<R: Real>(
         return Err(Error::NotFinite);
     }
     reader.check()?;
-    let needed = batch_size::<R>(reader.len(), columns, reader.channels());
-    let mut arena = Arena::new(workspace, needed.ok_or(Error::Memory)?)?;
+    let loaded = Design::<R>::size(reader.len(), columns, reader.channels());
+    let needed = loaded.and_then(|loaded| loaded.checked_add(size(columns, reader.channels())));
+    let mut arena = Arena::new(workspace, needed)?;
     let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena).ok_or(Error::NoSamples)?;
     let solutions = arena.take(coefficients.len());
     let unit = |index: usize| at(&design.units, index / columns.max(1));

@@ -1,12 +1,12 @@
 //! The samples' n x n system, for fewer samples than functions.
 
 use super::super::design::Design;
-use super::{Fit, Penalty, SMALLEST_GAP};
+use super::{Fit, Penalty};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt::Ldlt;
 use crate::matrix::{Panel, Triangle, at, copy};
-use crate::real::Real;
+use crate::real::{Real, rounding};
 
 /// The matrix K = P D^-1 P' over all columns, for relative penalties D, and g = P D^-1 m.
 pub(crate) struct Dual<'a, R> {
@@ -92,7 +92,6 @@ impl<'a, R: Real> Dual<'a, R> {
         if leave_one_out {
             factor.inverse_diagonal(inverse, diagonal);
         }
-        let smallest_gap = R::from_f64(SMALLEST_GAP) * R::EPSILON;
         let mut fit = Fit::default();
         for &value in shift.iter() {
             fit.eccentricity += value * value;
@@ -113,7 +112,7 @@ impl<'a, R: Real> Dual<'a, R> {
             for (((&alpha, &g), &shift), &diagonal) in samples {
                 in_sample -= g * alpha;
                 let complement = strength * diagonal;
-                let gap = (complement - left * inverse_n).max(smallest_gap);
+                let gap = (complement - left * inverse_n).max(rounding());
                 let residual = strength * alpha / gap;
                 let influence = residual * (R::ONE - count * shift);
                 press += residual * residual;

@@ -7,17 +7,13 @@ use super::super::result::{self, Outcome};
 use super::super::sums::{Layout, Sums, not_below_zero, residual_square, spread};
 use super::super::trust::Centre;
 use super::descent::Objective;
-use super::{Fit, Penalty, SMALLEST_GAP};
+use super::{Fit, Penalty};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::ldlt::Ldlt;
 use crate::matrix::{Panel, Triangle, copy, packed_len, row_at};
-use crate::real::Real;
+use crate::real::{Real, rounding};
 use crate::rows::rows;
-
-/// A column whose sum of squares about its mean is below this fraction of that about zero, in units of the type's
-/// epsilon, is constant.
-const NOISE: f64 = 64.0;
 
 /// A ridge problem whose intercept is free and eliminated.
 pub(crate) struct Normal<'a, R> {
@@ -156,7 +152,6 @@ fn residuals<R: Real>(
 ) {
     let n = R::from_usize(design.n);
     let inverse_n = R::ONE / n;
-    let smallest_gap = R::from_f64(SMALLEST_GAP) * R::EPSILON;
     let zero = [R::ZERO; LANES];
     let [mut press, mut influences, mut corrections] = [[zero; Config::MAX_CHANNELS]; 3];
     let (mut freedom, mut eccentricity) = (zero, zero);
@@ -178,7 +173,7 @@ fn residuals<R: Real>(
         eccentricity = lanes::plus_product(eccentricity, shift, shift);
         let (mut gap, mut weight) = (zero, zero);
         for l in 0..LANES {
-            gap[l] = R::ONE / (R::ONE - inverse_n - leverage[l]).max(smallest_gap);
+            gap[l] = R::ONE / (R::ONE - inverse_n - leverage[l]).max(rounding());
             weight[l] = R::ONE - n * shift[l];
         }
         let sums = press.iter_mut().zip(&mut influences).zip(&mut corrections);
@@ -269,7 +264,7 @@ impl<'a, R: Real> Centred<'a, R> {
             }
         }
         for j in 0..columns {
-            if gram.diagonal(j) > R::from_f64(NOISE) * R::EPSILON * sums.column_square(j) {
+            if gram.diagonal(j) > rounding::<R>() * sums.column_square(j) {
                 continue;
             }
             // What is left of a column that hardly moves is rounding noise, and says nothing about the values.

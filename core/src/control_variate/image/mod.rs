@@ -133,9 +133,10 @@ pub fn estimate_image_by<P: Processor>(
         return Err(Error::Range);
     }
     let layout = layout.of(n);
-    let basis = Basis::of(config.basis, layout.shape);
+    let mut basis = Basis::empty();
+    basis.set(config.basis, layout.shape);
     reader.check()?;
-    let mut arena = Arena::new(workspace, layout.workspace_len().ok_or(Error::Memory)?)?;
+    let mut arena = Arena::new(workspace, layout.workspace_len())?;
     Call { layout, basis: &basis, reader }.run::<P>(&mut arena, out);
     Ok(())
 }
