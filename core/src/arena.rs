@@ -15,13 +15,11 @@ impl<'a, R: Real> Arena<'a, R> {
     ///
     /// # Errors
     /// [`Error::Memory`] if it has fewer.
-    #[inline]
     pub(crate) fn new(buffer: &'a mut [R], needed: Option<usize>) -> Result<Self, Error> {
         if needed.is_some_and(|needed| needed <= buffer.len()) { Ok(Self { rest: buffer }) } else { Err(Error::Memory) }
     }
 
     /// The next `len` numbers, with whatever they held.
-    #[inline]
     pub(crate) fn take(&mut self, len: usize) -> &'a mut [R] {
         debug_assert!(len <= self.rest.len(), "more is taken than was said to be needed");
         let (part, rest) = core::mem::take(&mut self.rest).split_at_mut_checked(len).unwrap_or_default();
@@ -30,7 +28,6 @@ impl<'a, R: Real> Arena<'a, R> {
     }
 
     /// The next `len` numbers, all zero.
-    #[inline]
     pub(crate) fn zeros(&mut self, len: usize) -> &'a mut [R] {
         let part = self.take(len);
         part.fill(R::ZERO);
@@ -38,19 +35,16 @@ impl<'a, R: Real> Arena<'a, R> {
     }
 
     /// A packed triangle of `order` rows, with whatever they held.
-    #[inline]
     pub(crate) fn triangle(&mut self, order: usize) -> Triangle<&'a mut [R]> {
         Triangle::new(self.take(packed_len(order)), order)
     }
 
     /// The next `panels` groups of eight numbers.
-    #[inline]
     pub(crate) fn take_lanes(&mut self, panels: usize) -> &'a mut [Lanes<R>] {
         self.take(panels * LANES).as_chunks_mut::<LANES>().0
     }
 
     /// The rest of the buffer, to be given out again after the borrow ends.
-    #[inline]
     pub(crate) fn scratch(&mut self) -> Arena<'_, R> {
         Arena { rest: self.rest }
     }

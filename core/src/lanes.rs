@@ -91,7 +91,6 @@ pub(crate) fn divisor<R: Real, const L: usize>(a: &Lanes<R, L>) -> Lanes<R, L> {
 }
 
 /// The sum of the eight lanes, always as ((0+4)+(2+6)) + ((1+5)+(3+7)).
-#[inline]
 pub(crate) fn sum<R: Real>(a: &Lanes<R>) -> R {
     let [a0, a1, a2, a3, a4, a5, a6, a7] = *a;
     ((a0 + a4) + (a2 + a6)) + ((a1 + a5) + (a3 + a7))

@@ -83,7 +83,6 @@ pub(crate) fn next<R: Real, const L: usize>(
 }
 
 /// The Walsh function with `degree` sign changes, 0 to 7, which is constant on each eighth of [0, 1].
-#[inline]
 fn walsh<R: Real>(degree: usize, x: R) -> R {
     // A float-to-integer cast saturates, so this is total; 1 belongs to the last eighth.
     let cell = ((x.to_f32() * 8.0) as u32).min(7);

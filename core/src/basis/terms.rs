@@ -27,12 +27,10 @@ pub(crate) struct Term {
 }
 
 impl Term {
-    #[inline]
     pub(crate) fn degree(&self) -> usize {
         usize::from(self.degree)
     }
 
-    #[inline]
     pub(crate) fn column(&self) -> usize {
         usize::from(self.column)
     }

@@ -189,7 +189,6 @@ impl<R: Real> Accumulator<R> {
     }
 
     /// Adds one evaluated sample.
-    #[inline]
     fn add_row(&mut self, sums: &mut [R], p: &mut [Lanes<R, 1>], values: PerChannel<R>) {
         self.fit_units(&values, sums);
         let mut f = PerChannel::default();
@@ -323,7 +322,6 @@ impl<R: Real> Accumulator<R> {
     /// Moves the units' zero of a narrow type to the mean so far, each time that the samples, of which there were
     /// `before`, have doubled: of values that all lie to one side of it, as where the first sample is an outlier or in
     /// shadow, the sums would soon be too large for one more to show.
-    #[inline]
     fn move_zero(&mut self, before: u64, sums: &mut [R]) {
         if R::NARROW && before > 0 && self.samples.leading_zeros() < before.leading_zeros() {
             self.move_zero_to_mean(sums);

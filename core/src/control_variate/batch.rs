@@ -31,7 +31,6 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
 }
 
 /// The same of what does not stream.
-#[inline]
 fn size<R: Real>(config: &Config, plan: &Plan, n: usize) -> Option<usize> {
     let (columns, channels) = (plan.columns, config.regressed());
     let solve = match plan.method {

@@ -52,13 +52,11 @@ impl<R: Real> Units<R> {
     }
 
     /// A length stored in other units, in these.
-    #[inline]
     pub(crate) fn converted(&self, length: R, other: &Self) -> R {
         if self.exponent == other.exponent { length } else { length.scale(other.exponent - self.exponent) }
     }
 
     /// A value stored in other units, in these.
-    #[inline]
     pub(crate) fn relative(&self, stored: R, other: &Self) -> R {
         self.converted(other.offset + stored, other) - self.offset
     }
@@ -183,7 +181,6 @@ impl<'a, R: Real> Design<'a, R> {
 }
 
 /// Writes sums over lanes to places `first` and the next of a row.
-#[inline]
 fn put<R: Real>(row: &mut [R], first: usize, sums: &[Lanes<R>; 2]) {
     for (out, sum) in row.iter_mut().skip(first).zip(sums) {
         *out = lanes::sum(sum);
@@ -191,7 +188,6 @@ fn put<R: Real>(row: &mut [R], first: usize, sums: &[Lanes<R>; 2]) {
 }
 
 /// The sum of squares of group `index` of every panel.
-#[inline]
 pub(crate) fn square<R: Real>(panels: &Panel<impl Deref<Target = [Lanes<R>]>>, index: usize) -> R {
     let mut total = [R::ZERO; LANES];
     for values in panels.column(index) {
@@ -201,7 +197,6 @@ pub(crate) fn square<R: Real>(panels: &Panel<impl Deref<Target = [Lanes<R>]>>, i
 }
 
 /// Subtracts each column's mean, and writes it to `means`.
-#[inline]
 fn centre<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means: &mut [R]) {
     let inverse = R::ONE / R::from_usize(n);
     for (j, mean) in means.iter_mut().enumerate() {
@@ -231,7 +226,6 @@ fn clear_constant<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means:
 }
 
 /// Groups `first` and the next; zero where there is none.
-#[inline]
 fn two<R: Real>(groups: &[Lanes<R>], first: usize) -> [Lanes<R>; 2] {
     match from(groups, first) {
         [a, b, ..] => [*a, *b],
@@ -241,7 +235,6 @@ fn two<R: Real>(groups: &[Lanes<R>], first: usize) -> [Lanes<R>; 2] {
 }
 
 /// Zeroes the lanes after sample `n`, of which the last panel holds some.
-#[inline]
 fn clear_unused<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize) {
     let used = n % LANES;
     if used == 0 {
@@ -256,7 +249,6 @@ fn clear_unused<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize) {
 
 /// Where the stored values' zero and unit lie: at the first sample, so that constants are exact, and, for a type whose
 /// range squares could leave, at a power of two near the largest value.
-#[inline]
 pub(crate) fn units<R: Real>(reader: &Reader<'_>, subset: Subset) -> [Units<R>; Config::MAX_CHANNELS] {
     let mut units = [Units::default(); Config::MAX_CHANNELS];
     if R::NARROW {

@@ -61,12 +61,10 @@ impl Layout {
     }
 
     /// Group `index`, to be changed.
-    #[inline]
     pub(crate) fn group_mut<'a, R: Real>(&self, sums: &'a mut [R], index: usize) -> Sums<&'a mut [R]> {
         self.parts(row_at_mut(sums, self.len(), index), halves_mut)
     }
 
-    #[inline]
     fn parts<R: Real, S: Deref<Target = [R]>>(&self, group: S, halves: impl Fn(S, usize) -> (S, S)) -> Sums<S> {
         let (gram, rest) = halves(group, packed_len(self.terms()));
         let (rhs, square) = halves(rest, self.terms() * self.channels);
@@ -154,7 +152,6 @@ impl<R: Real, S: Deref<Target = [R]>> Sums<S> {
 
 impl<R: Real, S: DerefMut<Target = [R]>> Sums<S> {
     /// Adds a sample: its row, 1 first, and its values. Both are used up.
-    #[inline]
     pub(crate) fn add(&mut self, p: &mut [R], f: &mut [R]) {
         if self.form == Form::Factor {
             return givens::add_row(&mut self.gram, &mut self.rhs, &mut self.square, p, f);

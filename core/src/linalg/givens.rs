@@ -10,7 +10,6 @@ use core::ops::{Deref, DerefMut};
 
 /// Rotates one row into the factor: `x` has one number for each column, `y` one for each right-hand side, of which
 /// `rhs` has a row for each column. `residual` gathers what no coefficient can explain. `x` and `y` are used up.
-#[inline]
 pub(crate) fn add_row<R: Real, S: DerefMut<Target = [R]>>(
     factor: &mut Triangle<S>,
     rhs: &mut Panel<S>,
@@ -40,7 +39,6 @@ pub(crate) fn add_row<R: Real, S: DerefMut<Target = [R]>>(
 }
 
 /// x := R^-1 x; a column with no pivot gets coefficient zero.
-#[inline]
 pub(crate) fn solve<R: Real>(factor: &Triangle<impl Deref<Target = [R]>>, x: &mut [R]) {
     for j in (0..x.len()).rev() {
         let Some((before, x_j)) = split_at(x, j) else { return };
@@ -65,13 +63,11 @@ pub(crate) fn inverse_square<R: Real>(factor: &Triangle<impl Deref<Target = [R]>
     total
 }
 
-#[inline]
 fn quotient<R: Real>(value: R, pivot: R) -> R {
     if pivot == R::ZERO { R::ZERO } else { value / pivot }
 }
 
 /// (c, s, r) with c a + s b = r and c b - s a = 0, without overflow.
-#[inline]
 fn rotation<R: Real>(a: R, b: R) -> (R, R, R) {
     let size = a.abs().max(b.abs());
     let (a, b) = (a / size, b / size);

@@ -44,7 +44,6 @@ impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
     }
 
     /// 1 / d_j.
-    #[inline]
     pub(crate) fn inverse_pivot(&self, j: usize) -> R {
         self.0.diagonal(j)
     }
@@ -72,7 +71,6 @@ impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
     }
 
     /// x := L'^-1 x.
-    #[inline]
     pub(crate) fn backward(&self, x: &mut [R]) {
         for j in (0..x.len()).rev() {
             let Some((before, &mut x_j)) = split_at(x, j) else { return };
@@ -83,7 +81,6 @@ impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
     }
 
     /// x := A^-1 x.
-    #[inline]
     pub(crate) fn solve(&self, x: &mut [R]) {
         self.forward(x);
         for (j, x_j) in x.iter_mut().enumerate() {
@@ -93,7 +90,6 @@ impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
     }
 
     /// Writes the diagonal of A^-1 to `diagonal`; `inverse` is scratch for L^-1.
-    #[inline]
     pub(crate) fn inverse_diagonal(&self, mut inverse: Triangle<&mut [R]>, diagonal: &mut [R]) {
         diagonal.fill(R::ZERO);
         for j in 0..self.0.order() {
@@ -164,13 +160,11 @@ pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first:
 }
 
 /// Right-hand sides, one for each system.
-#[inline]
 pub(crate) fn one_each_mut<R>(x: &mut [Lanes<R>]) -> &mut [[Lanes<R>; 1]] {
     x.as_chunks_mut().0
 }
 
 /// X := A^-1 X for eight systems side by side.
-#[inline]
 pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
     forward_each::<R, 1>(factors, 0, one_each_mut(x));
     let pivots = Triangle::new(factors, x.len());
@@ -181,7 +175,6 @@ pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
 }
 
 /// X := L'^-1 X for eight systems side by side.
-#[inline]
 pub(crate) fn backward_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
     let factors = Triangle::new(factors, x.len());
     for j in (0..x.len()).rev() {

@@ -223,7 +223,6 @@ impl<R: Real> Descent<R> {
 
     /// One step along the negative gradient, of lengths `scales` for gradients in `units`; `bias` holds the powers of
     /// Adam's decays so far.
-    #[inline]
     fn step(
         &self,
         solution: &mut [R],
@@ -258,7 +257,6 @@ impl<R: Real> Descent<R> {
 }
 
 impl<R: Real> Objective<R> for Design<'_, R> {
-    #[inline]
     fn gradient(&self, channel: Option<usize>, b: &[R], out: &mut [R]) {
         let inverse = R::ONE / R::from_usize(self.n);
         out.fill(R::ZERO);

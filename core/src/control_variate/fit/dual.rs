@@ -22,7 +22,6 @@ pub(crate) fn len(n: usize, channels: usize) -> Option<usize> {
 }
 
 impl<'a, R: Real> Dual<'a, R> {
-    #[inline]
     pub(crate) fn new(design: &Design<'_, R>, penalties: &[R], arena: &mut Arena<'a, R>) -> Self {
         let padded = design.n.next_multiple_of(LANES);
         let mut kernel = arena.triangle(padded);
@@ -55,7 +54,6 @@ impl<'a, R: Real> Dual<'a, R> {
     /// The fit with ridge strength s over all columns. With B = K + s n I,
     ///
     /// b = D^-1 P' B^-1 f,   h_i - 1/n = 1 - s n (B^-1)_ii,   m'A^-1 p_i = (B^-1 g)_i.
-    #[inline]
     pub(crate) fn fit(
         &self,
         design: &Design<'_, R>,

@@ -96,7 +96,6 @@ impl<'a, R: Real> Normal<'a, R> {
     }
 
     /// Writes the coefficients of a fit, a row for each channel, and returns the factored matrix.
-    #[inline]
     pub(crate) fn solve<'f>(
         &self,
         penalty: Penalty<'_, R>,
@@ -218,7 +217,6 @@ pub(crate) fn len(Layout { columns, channels, .. }: Layout) -> usize {
 }
 
 /// Algorithm 1 from sums: what a fit to all samples adds to the mean.
-#[inline]
 pub(crate) fn least_squares<R: Real>(
     sums: &Sums<&[R]>,
     penalty: Penalty<'_, R>,
