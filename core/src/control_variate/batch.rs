@@ -2,7 +2,7 @@
 
 use super::accumulator::Accumulator;
 use super::config::{Config, Estimate};
-use super::design::Design;
+use super::design::{self, Design};
 use super::fit::descent;
 use super::fitter;
 use super::k_fold;
@@ -26,20 +26,20 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
         Method::Incremental | Method::SquareRoot => {
             Accumulator::<R>::new(config).map(|stream| stream.len() + stream.needed())
         }
-        _ => size::<R>(config, &plan, n).ok_or(Error::Memory),
+        _ => size(config, &plan, n).ok_or(Error::Memory),
     }
 }
 
 /// The same of what does not stream.
-fn size<R: Real>(config: &Config, plan: &Plan, n: usize) -> Option<usize> {
+fn size(config: &Config, plan: &Plan, n: usize) -> Option<usize> {
     let (columns, channels) = (plan.columns, config.regressed());
     let solve = match plan.method {
         Method::Plain | Method::Incremental | Method::SquareRoot => 0,
         Method::Descent => descent::size(columns, channels),
-        Method::KFold => k_fold::size::<R>(config, columns, channels, n)?,
+        Method::KFold => k_fold::size(config, columns, channels, n)?,
         Method::Robust | Method::LeaveOneOut | Method::LeastSquares => fitter::size(n, plan.dual, columns, channels)?,
     };
-    Design::<R>::size(n, columns, channels)?.checked_add(solve)
+    design::size(n, columns, channels)?.checked_add(solve)
 }
 
 /// Estimates the integral over primary sample space from a pixel's samples.
@@ -89,7 +89,7 @@ pub fn estimate_inlined<R: Real>(
     let reader = Reader::new(config, samples)?;
     let plan = Plan::new(config, shape.columns(), reader.len())?;
     reader.check()?;
-    let mut arena = Arena::new(workspace, size::<R>(config, &plan, reader.len()))?;
+    let mut arena = Arena::new(workspace, size(config, &plan, reader.len()))?;
     let design = Design::load(&reader, &basis, plan.columns, Subset::All, true, &mut arena).ok_or(Error::NoSamples)?;
     let outcome = match plan.method {
         _ if design.n == 1 => Outcome::default(),

@@ -40,8 +40,8 @@ pub(crate) fn len(layout: Layout) -> usize {
 impl<'a, R: Real> Groups<'a, R> {
     /// The folds that hold samples.
     fn each(&self) -> impl Iterator<Item = (usize, Sums<&'a [R]>)> {
-        let filled = |fold| Some(self.layout.group(self.sums, fold)).filter(|group| group.count() > R::ZERO);
-        (0..self.folds).filter_map(move |fold| Some((fold, filled(fold)?)))
+        let groups = (0..self.folds).map(|fold| (fold, self.layout.group(self.sums, fold)));
+        groups.filter(|(_, group)| group.count() > R::ZERO)
     }
 
     /// How many folds hold samples.

@@ -62,13 +62,13 @@ impl<R: Real> Units<R> {
     }
 }
 
-impl<'a, R: Real> Design<'a, R> {
-    /// Numbers that a design of `n` samples takes from its arena.
-    pub(crate) fn size(n: usize, columns: usize, channels: usize) -> Option<usize> {
-        let lanes = n.div_ceil(LANES).checked_mul(LANES)?;
-        lanes.checked_mul(columns.checked_add(channels)?)?.checked_add(columns)
-    }
+/// Numbers that a design of `n` samples takes from its arena.
+pub(crate) fn size(n: usize, columns: usize, channels: usize) -> Option<usize> {
+    let lanes = n.div_ceil(LANES).checked_mul(LANES)?;
+    lanes.checked_mul(columns.checked_add(channels)?)?.checked_add(columns)
+}
 
+impl<'a, R: Real> Design<'a, R> {
     /// Evaluates the basis at the samples of a subset, which were checked before. With `centre`, columns and values
     /// have mean zero; without, columns are as they are, and values relative to the first sample. None without a sample.
     // See `Reader`; without it on what follows, estimates of one pixel take 9 to 19 % more instructions.

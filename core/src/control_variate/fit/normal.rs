@@ -6,7 +6,7 @@ use super::super::per_channel::PerChannel;
 use super::super::result::{self, Outcome};
 use super::super::sums::{Layout, Sums, not_below_zero, residual_square, spread};
 use super::super::trust::Centre;
-use super::descent::Objective;
+use super::descent::{About, Objective};
 use super::{Fit, Penalty};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES, Lanes};
@@ -290,6 +290,11 @@ impl<'a, R: Real> Centred<'a, R> {
 }
 
 impl<R: Real> Objective<R> for Centred<'_, R> {
+    fn about(&self) -> About<'_, R> {
+        let Normal { count, means, .. } = self.normal;
+        About { count: count.to_f64() as usize, means, squares: self.squares }
+    }
+
     /// (c - G b) / n; without a channel, G b / n.
     fn gradient(&self, channel: Option<usize>, b: &[R], gradient: &mut [R]) {
         let Normal { count, gram, rhs, .. } = &self.normal;
@@ -314,23 +319,11 @@ impl<R: Real> Objective<R> for Centred<'_, R> {
         }
     }
 
-    fn squares(&self) -> PerChannel<R> {
-        self.squares
-    }
-
     fn residual_square(&self, channel: usize, b: &[R]) -> R {
         residual_square(self.squares[channel], &self.normal.gram, self.normal.rhs.row(channel).iter(), b)
     }
 
     fn column_square(&self, column: usize) -> R {
         self.normal.gram.diagonal(column)
-    }
-
-    fn count(&self) -> usize {
-        self.normal.count.to_f64() as usize
-    }
-
-    fn means(&self) -> &[R] {
-        self.normal.means
     }
 }
