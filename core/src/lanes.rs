@@ -13,11 +13,6 @@ pub(crate) const LANES: usize = 8;
 /// One value for each of eight samples.
 pub(crate) type Lanes<R, const L: usize = LANES> = [R; L];
 
-#[inline]
-pub(crate) fn splat<R: Real, const L: usize>(value: R) -> Lanes<R, L> {
-    [value; L]
-}
-
 // Always inlined, and so before anything else is: what is inlined later is scalar in places.
 
 // The operations copy their operands before they store: compilers then know that no store changes an operand, without
@@ -96,7 +91,6 @@ pub(crate) fn divisor<R: Real, const L: usize>(a: &Lanes<R, L>) -> Lanes<R, L> {
 }
 
 /// The sum of the eight lanes, always as ((0+4)+(2+6)) + ((1+5)+(3+7)).
-#[inline]
 pub(crate) fn sum<R: Real>(a: &Lanes<R>) -> R {
     let [a0, a1, a2, a3, a4, a5, a6, a7] = *a;
     ((a0 + a4) + (a2 + a6)) + ((a1 + a5) + (a3 + a7))
@@ -109,7 +103,7 @@ pub(crate) fn dot<R: Real>(a: &[R], b: &[R]) -> R {
     let (b_panels, b_rest) = b.as_chunks::<LANES>();
     let mut total = R::ZERO;
     if !a_panels.is_empty() {
-        let mut partial = splat(R::ZERO);
+        let mut partial = [R::ZERO; LANES];
         for (a, b) in a_panels.iter().zip(b_panels) {
             partial = plus_product(partial, *a, *b);
         }

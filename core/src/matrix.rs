@@ -1,47 +1,39 @@
 //! Checked views of matrices, over memory that somebody else owns.
 //!
-//! A view is made of a slice that is long enough, which is checked there and nowhere else. What lies outside reads as
-//! zero or as an empty row, so formulas over views have no index that could be out of bounds.
+//! What lies outside reads as zero or as an empty row, so formulas over views have no index that could be out of bounds.
 //!
 //! `S` is `&[T]` or `&mut [T]`.
 
-use crate::error::Error;
 use crate::real::Real;
-use crate::rows::{Rows, part, part_mut, rows, rows_mut};
 pub(crate) use crate::rows::{at, first_mut, from, from_mut, halves_mut, row_at, row_at_mut};
+use crate::rows::{part, part_mut, rows, rows_mut};
 use core::ops::{Deref, DerefMut};
 
 /// The count of numbers in a packed triangle of `order` rows.
-#[inline]
 pub(crate) const fn packed_len(order: usize) -> usize {
     order * (order + 1) / 2
 }
 
 /// Row `j` of a packed triangle, diagonal included.
-#[inline]
 pub(crate) fn row<T>(triangle: &[T], j: usize) -> &[T] {
     part(triangle, packed_len(j), j + 1)
 }
 
-#[inline]
 pub(crate) fn row_mut<T>(triangle: &mut [T], j: usize) -> &mut [T] {
     part_mut(triangle, packed_len(j), j + 1)
 }
 
 /// Entry (j, j) of a packed triangle.
-#[inline]
 pub(crate) fn diagonal<T: Copy + Default>(triangle: &[T], j: usize) -> T {
     at(triangle, packed_len(j) + j)
 }
 
 /// Entry `j` of a vector, and the entries before it: what a substitution works on.
-#[inline]
 pub(crate) fn split_at<T>(vector: &mut [T], j: usize) -> Option<(&mut [T], &mut T)> {
     vector.get_mut(..=j)?.split_last_mut().map(|(last, before)| (before, last))
 }
 
 /// Copies as many entries as both have.
-#[inline]
 pub(crate) fn copy<T: Copy>(into: &mut [T], from: &[T]) {
     for (into, &from) in into.iter_mut().zip(from) {
         *into = from;
@@ -58,49 +50,32 @@ pub(crate) struct Triangle<S> {
 /// The rows before row j, row j left of the diagonal, and the entry there.
 type Split<'a, T> = (Triangle<&'a [T]>, &'a mut [T], &'a mut T);
 
-impl<T, S: Deref<Target = [T]>> Triangle<S> {
-    /// # Errors
-    /// [`Error::Memory`] if `entries` are too few.
-    #[inline]
-    pub(crate) fn new(entries: S, order: usize) -> Result<Self, Error> {
-        if entries.len() < packed_len(order) { Err(Error::Memory) } else { Ok(Self { entries, order }) }
+impl<T: 'static, S: Deref<Target = [T]>> Triangle<S> {
+    pub(crate) fn new(entries: S, order: usize) -> Self {
+        Self { entries, order }
     }
 
-    #[inline]
     pub(crate) fn order(&self) -> usize {
         self.order
     }
 
     /// All entries, row after row.
-    #[inline]
     pub(crate) fn entries(&self) -> &[T] {
         &self.entries
     }
 
-    /// The same, to be read.
-    #[inline]
-    pub(crate) fn view(&self) -> Triangle<&[T]> {
-        Triangle { entries: &self.entries, order: self.order }
-    }
-
     /// Row `j`, diagonal included.
-    #[inline]
     pub(crate) fn row(&self, j: usize) -> &[T] {
         row(&self.entries, j)
     }
 
     /// Row `j` left of the diagonal.
-    #[inline]
     pub(crate) fn left(&self, j: usize) -> &[T] {
         part(&self.entries, packed_len(j), j)
     }
 
     /// The rows from the first on.
-    #[inline]
-    pub(crate) fn rows<'a>(&'a self) -> impl Iterator<Item = &'a [T]>
-    where
-        T: 'a,
-    {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = &[T]> {
         let mut rest: &[T] = &self.entries;
         (1..=self.order).map_while(move |len| {
             let (row, after) = rest.split_at_checked(len)?;
@@ -110,15 +85,13 @@ impl<T, S: Deref<Target = [T]>> Triangle<S> {
     }
 }
 
-impl<T: Copy + Default, S: Deref<Target = [T]>> Triangle<S> {
+impl<T: Copy + Default + 'static, S: Deref<Target = [T]>> Triangle<S> {
     /// Entry (j, k), k <= j.
-    #[inline]
     pub(crate) fn at(&self, j: usize, k: usize) -> T {
         at(self.row(j), k)
     }
 
     /// Entry (j, j).
-    #[inline]
     pub(crate) fn diagonal(&self, j: usize) -> T {
         diagonal(&self.entries, j)
     }
@@ -127,7 +100,6 @@ impl<T: Copy + Default, S: Deref<Target = [T]>> Triangle<S> {
 impl<R: Real, S: Deref<Target = [R]>> Triangle<S> {
     /// Sum_k a_jk x_k over the row up to the diagonal, what is left of it counted twice: times x_j and summed over the
     /// rows it makes x'A x.
-    #[inline]
     pub(crate) fn half_product(&self, j: usize, x: &[R]) -> R {
         let mut sum = R::ZERO;
         for (k, (&a, &x)) in self.row(j).iter().zip(x).enumerate() {
@@ -149,29 +121,24 @@ impl<R: Real, S: Deref<Target = [R]>> Triangle<S> {
     }
 }
 
-impl<T, S: DerefMut<Target = [T]>> Triangle<S> {
-    #[inline]
+impl<T: 'static, S: DerefMut<Target = [T]>> Triangle<S> {
     pub(crate) fn entries_mut(&mut self) -> &mut [T] {
         &mut self.entries
     }
 
-    #[inline]
     pub(crate) fn row_mut(&mut self, j: usize) -> &mut [T] {
         row_mut(&mut self.entries, j)
     }
 
-    #[inline]
     pub(crate) fn at_mut(&mut self, j: usize, k: usize) -> Option<&mut T> {
         self.row_mut(j).get_mut(k)
     }
 
-    #[inline]
     pub(crate) fn diagonal_mut(&mut self, j: usize) -> Option<&mut T> {
         self.entries.get_mut(packed_len(j) + j)
     }
 
     /// What the factorisation of row `j` works on.
-    #[inline]
     pub(crate) fn split(&mut self, j: usize) -> Option<Split<'_, T>> {
         let (before, rest) = self.entries.split_at_mut_checked(packed_len(j))?;
         let (left, diagonal) = split_at(rest, j)?;
@@ -181,7 +148,6 @@ impl<T, S: DerefMut<Target = [T]>> Triangle<S> {
 
 impl<'a, T> Panel<&'a mut [T]> {
     /// Forgets all rows but the first `count`.
-    #[inline]
     pub(crate) fn truncate(&mut self, count: usize) {
         let entries = core::mem::take(&mut self.entries);
         let len = entries.len().min(count * self.width);
@@ -189,7 +155,6 @@ impl<'a, T> Panel<&'a mut [T]> {
     }
 
     /// The same, from now on only to be read.
-    #[inline]
     pub(crate) fn into_shared(self) -> Panel<&'a [T]> {
         Panel { entries: self.entries, width: self.width }
     }
@@ -202,63 +167,44 @@ pub(crate) struct Panel<S> {
     width: usize,
 }
 
-impl<T, S: Deref<Target = [T]>> Panel<S> {
+impl<T: 'static, S: Deref<Target = [T]>> Panel<S> {
     /// The whole rows of `width` entries.
-    #[inline]
     pub(crate) fn new(entries: S, width: usize) -> Self {
         Self { entries, width }
     }
 
-    #[inline]
-    pub(crate) fn view(&self) -> Panel<&[T]> {
-        Panel { entries: &self.entries, width: self.width }
-    }
-
     /// Row `i`.
-    #[inline]
     pub(crate) fn row(&self, i: usize) -> &[T] {
         row_at(&self.entries, self.width, i)
     }
 
-    #[inline]
-    pub(crate) fn rows(&self) -> Rows<&[T]> {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = &[T]> {
         rows(&self.entries, self.width)
     }
 
     /// The entries at place `j` of every row.
-    #[inline]
-    pub(crate) fn column<'a>(&'a self, j: usize) -> impl Iterator<Item = &'a T>
-    where
-        T: 'a,
-    {
+    pub(crate) fn column(&self, j: usize) -> impl Iterator<Item = &T> {
         self.rows().filter_map(move |row| row.get(j))
     }
 }
 
-impl<T: Copy + Default, S: Deref<Target = [T]>> Panel<S> {
+impl<T: Copy + Default + 'static, S: Deref<Target = [T]>> Panel<S> {
     /// Entry (i, j).
-    #[inline]
     pub(crate) fn at(&self, i: usize, j: usize) -> T {
         at(&self.entries, i * self.width + j)
     }
 }
 
-impl<T, S: DerefMut<Target = [T]>> Panel<S> {
-    #[inline]
+impl<T: 'static, S: DerefMut<Target = [T]>> Panel<S> {
     pub(crate) fn row_mut(&mut self, i: usize) -> &mut [T] {
         row_at_mut(&mut self.entries, self.width, i)
     }
 
-    #[inline]
-    pub(crate) fn rows_mut(&mut self) -> Rows<&mut [T]> {
+    pub(crate) fn rows_mut(&mut self) -> impl Iterator<Item = &mut [T]> {
         rows_mut(&mut self.entries, self.width)
     }
 
-    #[inline]
-    pub(crate) fn column_mut<'a>(&'a mut self, j: usize) -> impl Iterator<Item = &'a mut T>
-    where
-        T: 'a,
-    {
+    pub(crate) fn column_mut(&mut self, j: usize) -> impl Iterator<Item = &mut T> {
         self.rows_mut().filter_map(move |row| row.get_mut(j))
     }
 }

@@ -98,6 +98,12 @@ pub trait Real:
     }
 }
 
+/// What is smaller than this, relative to what it is left of, is rounding noise.
+#[inline]
+pub(crate) fn rounding<R: Real>() -> R {
+    R::from_f64(64.0) * R::EPSILON
+}
+
 /// What is alike in both types, with the names that `libm` has for it.
 macro_rules! real {
     ($type:ident, $narrow:literal, $sqrt:ident $exp:ident $cos:ident $abs:ident $exponent:ident; $($own:item)*) => {

@@ -50,40 +50,33 @@ pub(crate) fn next<R: Real, const L: usize>(
     second_below: &Lanes<R, L>,
 ) -> Lanes<R, L> {
     let mut out = *argument;
-    match family {
+    let (up, down) = match family {
         // d P_d = (2 d - 1) t P_(d-1) - (d - 1) P_(d-2) with phi_d = sqrt(2 d + 1) P_d.
-        Family::Legendre => {
-            let up = R::from_f64(at(&LEGENDRE_UP, degree));
-            let down = R::from_f64(at(&LEGENDRE_DOWN, degree));
-            let (below, second) = (*below, *second_below);
-            for l in 0..L {
-                out[l] = up * out[l] * below[l] - down * second[l];
-            }
-        }
+        Family::Legendre => (R::from_f64(at(&LEGENDRE_UP, degree)), R::from_f64(at(&LEGENDRE_DOWN, degree))),
         // cos(d a) = 2 cos(a) cos((d-1) a) - cos((d-2) a), all but the constant scaled by sqrt(2).
         Family::Sine => {
             let root = R::from_f64(core::f64::consts::SQRT_2);
-            let (up, down) = match degree {
+            match degree {
                 1 => (root, R::ZERO),
                 2 => (R::ONE + R::ONE, root),
                 _ => (R::ONE + R::ONE, R::ONE),
-            };
-            let (below, second) = (*below, *second_below);
-            for l in 0..L {
-                out[l] = up * out[l] * below[l] - down * second[l];
             }
         }
         Family::Step | Family::Gaussian => {
             for x in &mut out {
                 *x = walsh(degree, *x);
             }
+            return out;
         }
+    };
+    let (below, second) = (*below, *second_below);
+    for l in 0..L {
+        out[l] = up * out[l] * below[l] - down * second[l];
     }
     out
 }
 
 /// The Walsh function with `degree` sign changes, 0 to 7, which is constant on each eighth of [0, 1].
-#[inline]
 fn walsh<R: Real>(degree: usize, x: R) -> R {
     // A float-to-integer cast saturates, so this is total; 1 belongs to the last eighth.
     let cell = ((x.to_f32() * 8.0) as u32).min(7);

@@ -84,7 +84,6 @@ impl Gaussians {
 }
 
 /// Coordinate of the `index`-th centre.
-#[inline]
 fn centre(index: usize, step: f64) -> f64 {
     let x = 0.5 + (index + 1) as f64 * step;
     x - libm::floor(x)

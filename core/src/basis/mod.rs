@@ -112,19 +112,16 @@ impl Shape {
     }
 
     /// Slices whose own functions are no columns, and how many functions each has a copy of.
-    #[inline]
     pub(crate) fn slices_apart(&self) -> (usize, usize) {
         if self.is_apart { (self.slices, self.copies) } else { (0, 0) }
     }
 
     /// Slices whose indicators are columns.
-    #[inline]
     fn indicators(&self) -> usize {
         if self.is_apart { 0 } else { self.slices }
     }
 
     /// All functions; the constant is not one of them.
-    #[inline]
     pub(crate) fn columns(&self) -> usize {
         self.shared + self.indicators() * (1 + self.copies)
     }
@@ -159,24 +156,23 @@ impl Basis {
     /// [`Error::Range`] if a number is out of range or the terms, constant included, would exceed [`MAX_TERMS`].
     pub fn new(family: Family, dims: usize, order: usize, slices: usize) -> Result<Self, Error> {
         let mut basis = Self::empty();
-        basis.set(family, Shape::new(dims, order, slices)?)?;
+        basis.set(family, Shape::new(dims, order, slices)?);
         Ok(basis)
     }
 
     /// A basis of no functions, to be set.
-    #[inline]
     pub(crate) fn empty() -> Self {
         Self { family: Family::Legendre, shape: Shape::default(), terms: Vec::new(), gaussians: None }
     }
 
-    /// Makes it another basis, of a shape that was checked. A basis is a few kilobytes, which are better not moved.
-    #[inline]
-    pub(crate) fn set(&mut self, family: Family, shape: Shape) -> Result<(), Error> {
-        self.family = family;
-        self.shape = shape;
-        terms::total_degree(shape.continuous, shape.order, shape.indicators(), &mut self.terms).ok_or(Error::Range)?;
-        self.gaussians = (family == Family::Gaussian).then(|| Gaussians::new(shape.continuous, shape.shared));
-        Ok(())
+    /// Makes it, that was empty, one of a shape that was checked. A basis is a few kilobytes, which are better not
+    /// moved.
+    pub(crate) fn set(&mut self, family: Family, shape: Shape) {
+        (self.family, self.shape) = (family, shape);
+        terms::total_degree(shape.continuous, shape.order, shape.indicators(), &mut self.terms);
+        if family == Family::Gaussian {
+            self.gaussians = Some(Gaussians::new(shape.continuous, shape.shared));
+        }
     }
 
     /// How many functions there are; the constant is not one of them.
@@ -262,7 +258,6 @@ impl Basis {
     }
 
     /// The slices of `L` points.
-    #[inline]
     pub(crate) fn slices_at<R: Real, const L: usize>(&self, x: &[Lanes<R, L>]) -> [usize; L] {
         let choice = x.get(self.shape.continuous).copied().unwrap_or([R::ZERO; L]);
         choice.map(|u| slice_of(u, self.shape.slices))
@@ -295,7 +290,6 @@ impl Basis {
 }
 
 /// Which of `slices` equal parts of [0, 1] holds `u`; 1 belongs to the last.
-#[inline]
 fn slice_of<R: Real>(u: R, slices: usize) -> usize {
     // A float-to-integer cast saturates, so this is total.
     ((u.to_f32() * slices as f32) as usize).min(slices - 1)

@@ -27,12 +27,10 @@ pub(crate) struct Term {
 }
 
 impl Term {
-    #[inline]
     pub(crate) fn degree(&self) -> usize {
         usize::from(self.degree)
     }
 
-    #[inline]
     pub(crate) fn column(&self) -> usize {
         usize::from(self.column)
     }
@@ -47,7 +45,7 @@ impl Term {
     ) -> Lanes<R, L> {
         // The constant is no column: reading past the end gives it.
         let [a, b] = self.sources;
-        let constant = lanes::splat(R::ONE);
+        let constant = [R::ONE; L];
         // Behind a black box, or compilers choose anew for every lane.
         let a = black_box(columns.get(usize::from(a)).unwrap_or(&constant));
         let b = black_box(columns.get(usize::from(b)).unwrap_or(&constant));
@@ -59,10 +57,9 @@ impl Term {
     }
 }
 
-/// Sets `terms` to every multi-index of degree 1 to `order` over `dims` coordinates, degree by degree; None if there
-/// are too many. Columns `dims..dims + gap` are left free for the slices' indicators.
+/// Adds to no `terms` every multi-index of degree 1 to `order` over `dims` coordinates, degree by degree; None if there
+/// is no room for more. Columns `dims..dims + gap` are left free for the slices' indicators.
 pub(crate) fn total_degree(dims: usize, order: usize, gap: usize, terms: &mut Vec<Term, MAX_TERMS>) -> Option<()> {
-    terms.clear();
     let column = |index: usize| u8::try_from(if index < dims { index } else { index + gap }).ok();
     // The columns of the one-dimensional functions, by coordinate and degree.
     let mut pure = [[CONSTANT; MAX_ORDER + 1]; MAX_DIMS];

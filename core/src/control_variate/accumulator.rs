@@ -66,11 +66,13 @@ impl<R: Real> Accumulator<R> {
     pub fn new(config: &Config) -> Result<Self, Error> {
         let shape = config.checked_shape()?;
         plan::check_stream(config)?;
-        let method = Method::of(config, config.controls + shape.columns());
+        let columns = config.controls + shape.columns();
+        let method = Method::of(config, columns);
+        let (shape, columns) = if method == Method::Plain { (Shape::default(), 0) } else { (shape, columns) };
         let layout = Layout {
             form: if method == Method::SquareRoot { Form::Factor } else { Form::Products },
-            columns: if method == Method::Plain { 0 } else { config.controls + shape.columns() },
-            channels: if config.color == Color::LuminanceRatio { 1 } else { config.channels },
+            columns,
+            channels: config.regressed(),
         };
         Ok(Self {
             config: *config,
@@ -109,15 +111,20 @@ impl<R: Real> Accumulator<R> {
 
     /// Numbers of workspace that an estimate takes.
     pub fn workspace_len(&self) -> usize {
+        // Zero would say that there is no such accumulator.
+        self.needed().max(1)
+    }
+
+    /// The same, none for estimates that take none.
+    pub(crate) fn needed(&self) -> usize {
         let fit = normal::len(self.layout);
-        let len = match self.method {
+        match self.method {
+            Method::Plain | Method::Incremental | Method::LeaveOneOut => 0,
+            Method::LeastSquares => fit,
             Method::Robust | Method::KFold => cross_fit::len(self.layout) + fit,
             Method::Descent => fit + descent::size(self.layout.columns, self.layout.channels),
             Method::SquareRoot => givens::size(self.layout),
-            _ => fit,
-        };
-        // Zero would say that there is no such accumulator.
-        len.max(1)
+        }
     }
 
     /// Samples added so far.
@@ -161,19 +168,15 @@ impl<R: Real> Accumulator<R> {
         reader.check()?;
         self.check_capacity(reader.len() as u64)?;
         let mut basis = Basis::empty();
+        basis.set(self.config.basis, self.shape);
         let terms = self.layout.terms();
-        if terms > 1 {
-            basis.set(self.config.basis, self.shape)?;
-        }
         let mut p = [[R::ZERO]; MAX_TERMS];
         p[0] = [R::ONE];
         let mut x = [[R::ZERO; 1]; MAX_DIMS];
         let mut h = [[R::ZERO; 1]; Config::MAX_CONTROLS];
         reader.each(Subset::All, |sample| {
             sample.put(0, &mut x, &mut h);
-            if terms > 1 {
-                reader.columns(&basis, &x, &h, from_mut(first_mut(&mut p, terms), 1));
-            }
+            reader.columns(&basis, &x, &h, from_mut(first_mut(&mut p, terms), 1));
             if let Some(colour) = reader.colour(sample) {
                 for (sum, value) in self.colour.iter_mut().zip(colour) {
                     *sum += value;
@@ -186,7 +189,6 @@ impl<R: Real> Accumulator<R> {
     }
 
     /// Adds one evaluated sample.
-    #[inline]
     fn add_row(&mut self, sums: &mut [R], p: &mut [Lanes<R, 1>], values: PerChannel<R>) {
         self.fit_units(&values, sums);
         let mut f = PerChannel::default();
@@ -199,12 +201,10 @@ impl<R: Real> Accumulator<R> {
             self.incremental.correct(self.config.ridge, rest, from(p, 1), f);
         }
         let fold = folds::of_stream(self.samples, self.groups());
-        if let Ok(mut sums) = self.layout.group_mut(groups, fold) {
-            sums.add(p, f);
-        }
+        self.layout.group_mut(groups, fold).add(p, f);
         self.samples += 1;
         if self.method == Method::Incremental {
-            self.incremental.refit(self.samples, &self.config, self.layout, groups, rest);
+            self.incremental.refit(self.samples, &self.config, self.shape, self.layout, groups, rest);
         }
     }
 
@@ -238,11 +238,11 @@ impl<R: Real> Accumulator<R> {
             change.shift[channel] = theirs.offset * factor - ours.offset;
         }
         let (layout, groups) = (self.layout, self.groups());
-        let size = |sums: &[R], fold| layout.group(sums, fold).map_or(0.0, |group| group.count().to_f64());
+        let size = |sums: &[R], fold| layout.group(sums, fold).count().to_f64();
         let rotation = folds::rotation(groups, |fold| size(sums, fold), |fold| size(other_sums, fold));
         for fold in 0..groups.get() {
-            let theirs = layout.group(other_sums, (fold + groups.get() - rotation) % groups)?;
-            layout.group_mut(sums, fold)?.merge(&theirs, &change);
+            let theirs = layout.group(other_sums, (fold + groups.get() - rotation) % groups);
+            layout.group_mut(sums, fold).merge(&theirs, &change);
         }
         for (sum, value) in self.colour.iter_mut().zip(other.colour) {
             *sum += value;
@@ -254,7 +254,7 @@ impl<R: Real> Accumulator<R> {
         if self.method == Method::Incremental {
             let (groups, rest) = halves_mut(sums, self.sums_len());
             self.incremental.refit_now();
-            self.incremental.refit(self.samples, &self.config, layout, groups, rest);
+            self.incremental.refit(self.samples, &self.config, self.shape, layout, groups, rest);
         }
         Ok(())
     }
@@ -265,20 +265,30 @@ impl<R: Real> Accumulator<R> {
     /// [`Error::NoSamples`] if there are none, [`Error::Memory`] if `workspace` is shorter than
     /// [`Accumulator::workspace_len`] says.
     pub fn estimate(&self, sums: &[R], workspace: &mut [R]) -> Result<Estimate, Error> {
-        let (summary, arena) = (self.checked_summary(sums)?, &mut Arena::new(workspace));
+        self.check_length(sums)?;
+        if self.samples == 0 {
+            return Err(Error::NoSamples);
+        }
+        let (summary, arena) = (self.summary(sums), &mut Arena::new(workspace, Some(self.needed()))?);
+        // From an estimate in the sums' units.
+        let correcting = |of: Outcome<R>| Outcome { correction: of.correction - summary.mean, ..of };
         let outcome = match self.method {
-            Method::Robust | Method::KFold => self.cross_fit(sums, &summary, arena)?,
-            Method::Incremental | Method::SquareRoot => self.one_by_one(sums, &summary, arena)?,
+            Method::Robust | Method::KFold => self.cross_fit(sums, &summary, arena),
+            Method::Incremental => correcting(incremental::outcome(&self.incremental, self.samples)),
+            Method::SquareRoot => {
+                let group = self.layout.group(sums, 0);
+                correcting(givens::least_squares(&group, &self.config, &self.basis(), arena))
+            }
             Method::LeastSquares => {
-                let (group, penalties) = (self.layout.group(sums, 0)?, arena.take(self.layout.columns)?);
-                ridge::penalties(&self.config, &self.basis()?, |j| group.mean_square(j), penalties);
+                let (group, penalties) = (self.layout.group(sums, 0), arena.take(self.layout.columns));
+                ridge::penalties(&self.config, &self.basis(), |j| group.mean_square(j), penalties);
                 let strength = R::from_f64(ridge::least_squares::<R>(self.config.ridge));
-                normal::least_squares(&group, Penalty { strength, relative: penalties }, arena)?
+                normal::least_squares(&group, Penalty { strength, relative: penalties }, arena)
             }
             Method::Descent => {
-                let centred = normal::Centred::new(&self.layout.group(sums, 0)?, arena)?;
-                let coefficients = arena.zeros(self.layout.coefficients())?;
-                descent::descend(&centred, &self.config, &self.basis()?, coefficients, summary.variance, arena)?
+                let centred = normal::Centred::new(&self.layout.group(sums, 0), arena);
+                let coefficients = arena.zeros(self.layout.coefficients());
+                descent::descend(&centred, &self.config, &self.basis(), coefficients, summary.variance, arena)
             }
             // A stream has no leave-one-out errors.
             Method::Plain | Method::LeaveOneOut => Outcome::default(),
@@ -286,41 +296,21 @@ impl<R: Real> Accumulator<R> {
         Ok(summary.finish(outcome))
     }
 
-    pub(crate) fn checked_summary(&self, sums: &[R]) -> Result<Summary<R>, Error> {
-        self.check_length(sums)?;
-        if self.samples == 0 { Err(Error::NoSamples) } else { Ok(self.summary(sums)) }
-    }
-
-    /// What takes one sample after the other, also from arrays.
-    pub(crate) fn one_by_one(
-        &self,
-        sums: &[R],
-        summary: &Summary<R>,
-        arena: &mut Arena<'_, R>,
-    ) -> Result<Outcome<R>, Error> {
-        let outcome = if self.method == Method::SquareRoot {
-            givens::least_squares(&self.layout.group(sums, 0)?, &self.config, &self.basis()?, arena)?
-        } else {
-            incremental::outcome(&self.incremental, self.samples)
-        };
-        Ok(Outcome { correction: outcome.correction - summary.mean, ..outcome })
-    }
-
     #[inline(never)]
-    fn basis(&self) -> Result<Basis, Error> {
+    fn basis(&self) -> Basis {
         let mut basis = Basis::empty();
-        basis.set(self.config.basis, self.shape)?;
-        Ok(basis)
+        basis.set(self.config.basis, self.shape);
+        basis
     }
 
-    fn cross_fit(&self, sums: &[R], summary: &Summary<R>, arena: &mut Arena<'_, R>) -> Result<Outcome<R>, Error> {
-        let (config, layout, basis) = (&self.config, self.layout, &self.basis()?);
+    fn cross_fit(&self, sums: &[R], summary: &Summary<R>, arena: &mut Arena<'_, R>) -> Outcome<R> {
+        let (config, layout, basis) = (&self.config, self.layout, &self.basis());
         let groups = Groups { sums, folds: self.groups().get(), layout, config, basis };
         let k_fold = self.method == Method::KFold;
         // One fold to fit to and one to judge by, and for K-fold one to correct.
         let needed = if k_fold && !matches!(config.ridge, Ridge::Fixed(_)) { groups.folds.min(3) } else { 2 };
         let Some(variance) = summary.variance.filter(|_| groups.filled() >= needed) else {
-            return Ok(Outcome::default());
+            return Outcome::default();
         };
         if k_fold {
             cross_fit::nested(&groups, summary.mean, arena)
@@ -332,7 +322,6 @@ impl<R: Real> Accumulator<R> {
     /// Moves the units' zero of a narrow type to the mean so far, each time that the samples, of which there were
     /// `before`, have doubled: of values that all lie to one side of it, as where the first sample is an outlier or in
     /// shadow, the sums would soon be too large for one more to show.
-    #[inline]
     fn move_zero(&mut self, before: u64, sums: &mut [R]) {
         if R::NARROW && before > 0 && self.samples.leading_zeros() < before.leading_zeros() {
             self.move_zero_to_mean(sums);
@@ -352,7 +341,7 @@ impl<R: Real> Accumulator<R> {
 
     /// What the sums say without a fit.
     fn summary(&self, sums: &[R]) -> Summary<R> {
-        let groups = (0..self.groups().get()).filter_map(|fold| self.layout.group(sums, fold).ok());
+        let groups = (0..self.groups().get()).map(|fold| self.layout.group(sums, fold));
         let mut summary = Summary::of_sums(groups, self.samples, self.layout.channels, self.units);
         if self.config.color == Color::LuminanceRatio {
             let inverse = 1.0 / self.samples as f64;
@@ -363,9 +352,7 @@ impl<R: Real> Accumulator<R> {
 
     fn change(&mut self, sums: &mut [R], change: &Change<R>) {
         for fold in 0..self.groups().get() {
-            if let Ok(mut group) = self.layout.group_mut(sums, fold) {
-                group.change(change);
-            }
+            self.layout.group_mut(sums, fold).change(change);
         }
         self.incremental.change(change, self.samples, from_mut(sums, self.sums_len()), self.layout);
     }

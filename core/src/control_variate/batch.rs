@@ -1,8 +1,8 @@
 //! Estimates from samples in caller arrays.
 
 use super::accumulator::Accumulator;
-use super::config::{Color, Config, Estimate};
-use super::design::Design;
+use super::config::{Config, Estimate};
+use super::design::{self, Design};
 use super::fit::descent;
 use super::fitter;
 use super::k_fold;
@@ -22,22 +22,24 @@ use crate::real::Real;
 #[inline]
 pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error> {
     let plan = Plan::new(config, config.checked_shape()?.columns(), n)?;
-    let columns = plan.columns;
-    let channels = if config.color == Color::LuminanceRatio { 1 } else { config.channels };
-    let solve = match plan.method {
-        Method::Plain => Some(0),
-        // The fits of an incremental estimate are part of the stream.
-        Method::Incremental => return Ok(Accumulator::<R>::new(config)?.len()),
-        Method::SquareRoot => {
-            let stream = Accumulator::<R>::new(config)?;
-            return Ok(stream.len() + stream.workspace_len());
+    match plan.method {
+        Method::Incremental | Method::SquareRoot => {
+            Accumulator::<R>::new(config).map(|stream| stream.len() + stream.needed())
         }
-        Method::Descent => Some(descent::size(columns, channels)),
-        Method::KFold => k_fold::size::<R>(config, columns, channels, n),
-        Method::Robust | Method::LeaveOneOut | Method::LeastSquares => fitter::size(n, plan.dual, columns, channels),
+        _ => size(config, &plan, n).ok_or(Error::Memory),
+    }
+}
+
+/// The same of what does not stream.
+fn size(config: &Config, plan: &Plan, n: usize) -> Option<usize> {
+    let (columns, channels) = (plan.columns, config.regressed());
+    let solve = match plan.method {
+        Method::Plain | Method::Incremental | Method::SquareRoot => 0,
+        Method::Descent => descent::size(columns, channels),
+        Method::KFold => k_fold::size(config, columns, channels, n)?,
+        Method::Robust | Method::LeaveOneOut | Method::LeastSquares => fitter::size(n, plan.dual, columns, channels)?,
     };
-    let design = Design::<R>::size(n, columns, channels).ok_or(Error::Memory)?;
-    design.checked_add(solve.ok_or(Error::Memory)?).ok_or(Error::Memory)
+    design::size(n, columns, channels)?.checked_add(solve)
 }
 
 /// Estimates the integral over primary sample space from a pixel's samples.
@@ -83,21 +85,21 @@ pub fn estimate_inlined<R: Real>(
         return streamed(config, samples, workspace);
     }
     let mut basis = Basis::empty();
-    basis.set(config.basis, shape)?;
+    basis.set(config.basis, shape);
     let reader = Reader::new(config, samples)?;
     let plan = Plan::new(config, shape.columns(), reader.len())?;
     reader.check()?;
-    let mut arena = Arena::new(workspace);
-    let design = Design::load(&reader, &basis, plan.columns, Subset::All, true, &mut arena)?;
+    let mut arena = Arena::new(workspace, size(config, &plan, reader.len()))?;
+    let design = Design::load(&reader, &basis, plan.columns, Subset::All, true, &mut arena).ok_or(Error::NoSamples)?;
     let outcome = match plan.method {
         _ if design.n == 1 => Outcome::default(),
         Method::Robust | Method::LeaveOneOut | Method::LeastSquares => {
-            fitter::fit(&design, config, &basis, &plan, None, &mut arena)?.outcome(&design)
+            fitter::fit(&design, config, &basis, &plan, None, &mut arena).outcome(&design)
         }
         Method::KFold => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
         Method::Descent => {
-            let coefficients = arena.zeros(design.columns * design.channels)?;
-            descent::descend(&design, config, &basis, coefficients, result::plain_variance(&design), &mut arena)?
+            let coefficients = arena.zeros(design.columns * design.channels);
+            descent::descend(&design, config, &basis, coefficients, result::plain_variance(&design), &mut arena)
         }
         // What streams went its own way above.
         Method::Plain | Method::Incremental | Method::SquareRoot => Outcome::default(),
@@ -111,7 +113,5 @@ fn streamed<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R])
     let (sums, workspace) = workspace.split_at_mut_checked(stream.len()).ok_or(Error::Memory)?;
     stream.reset(sums)?;
     stream.add(sums, samples)?;
-    let summary = stream.checked_summary(sums)?;
-    let outcome = stream.one_by_one(sums, &summary, &mut Arena::new(workspace))?;
-    Ok(summary.finish(outcome))
+    stream.estimate(sums, workspace)
 }

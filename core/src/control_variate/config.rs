@@ -200,12 +200,10 @@ impl Config {
     }
 
     /// Checks every field, and returns how many functions there are.
-    #[inline]
     pub(crate) fn checked_shape(&self) -> Result<Shape, Error> {
         self.keeps_rules().map_err(|(error, _)| error)
     }
 
-    #[inline]
     fn keeps_rules(&self) -> Result<Shape, (Error, &'static CStr)> {
         let rule = |is_kept: bool, words: &'static CStr| if is_kept { Ok(()) } else { Err((Error::Range, words)) };
         rule((1..=MAX_DIMS).contains(&self.dims), c"dims must be 1 to 16")?;
@@ -234,12 +232,15 @@ impl Config {
     }
 
     /// Numbers from one sample's coordinates to the next.
-    #[inline]
     pub(crate) fn step(&self) -> usize {
         if self.stride == 0 { self.dims } else { self.stride }
     }
 
-    #[inline]
+    /// How many values of a sample are regressed: its channels, or its luminance.
+    pub(crate) fn regressed(&self) -> usize {
+        if self.color == Color::LuminanceRatio { 1 } else { self.channels }
+    }
+
     pub(crate) fn fold_count(&self) -> NonZeroUsize {
         NonZeroUsize::new(self.folds).unwrap_or(FOLDS)
     }

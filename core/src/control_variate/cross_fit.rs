@@ -16,7 +16,6 @@ use super::sums::{self, Layout, Sums};
 use super::trust::{Centre, Judge, Mixture};
 use crate::arena::Arena;
 use crate::basis::Basis;
-use crate::error::Error;
 use crate::matrix::at;
 use crate::real::Real;
 use crate::rows::{first, rows, rows_mut};
@@ -41,8 +40,8 @@ pub(crate) fn len(layout: Layout) -> usize {
 impl<'a, R: Real> Groups<'a, R> {
     /// The folds that hold samples.
     fn each(&self) -> impl Iterator<Item = (usize, Sums<&'a [R]>)> {
-        let filled = |fold| self.layout.group(self.sums, fold).ok().filter(|group| group.count() > R::ZERO);
-        (0..self.folds).filter_map(move |fold| Some((fold, filled(fold)?)))
+        let groups = (0..self.folds).map(|fold| (fold, self.layout.group(self.sums, fold)));
+        groups.filter(|(_, group)| group.count() > R::ZERO)
     }
 
     /// How many folds hold samples.
@@ -51,7 +50,7 @@ impl<'a, R: Real> Groups<'a, R> {
     }
 
     /// Writes the sums of all folds but those left out.
-    fn train<'b>(&self, left_out: &[usize], sums: &'b mut [R]) -> Result<Sums<&'b [R]>, Error> {
+    fn train<'b>(&self, left_out: &[usize], sums: &'b mut [R]) -> Sums<&'b [R]> {
         sums.fill(R::ZERO);
         for (fold, group) in rows(self.sums, self.layout.len()).take(self.folds).enumerate() {
             if !left_out.contains(&fold) {
@@ -69,24 +68,24 @@ impl<'a, R: Real> Groups<'a, R> {
         train: &Sums<&[R]>,
         coefficients: &mut [R],
         arena: &mut Arena<'_, R>,
-    ) -> Result<[Centre<R>; FITS], Error> {
+    ) -> [Centre<R>; FITS] {
         let mut arena = arena.scratch();
         let mut centres = [Centre::new(R::ZERO, R::ZERO, R::ZERO); FITS];
         coefficients.fill(R::ZERO);
         if train.count() > R::ZERO {
-            let penalties = arena.take(self.layout.columns)?;
+            let penalties = arena.take(self.layout.columns);
             // From the training set alone, as the coefficients.
             ridge::penalties(self.config, self.basis, |j| train.mean_square(j), penalties);
-            let centred = Centred::new(train, &mut arena)?;
+            let centred = Centred::new(train, &mut arena);
             let each = rows_mut(coefficients, self.layout.coefficients());
             for ((&strength, coefficients), centre) in strengths.iter().zip(each).zip(&mut centres) {
                 let mut arena = arena.scratch();
                 let penalty = Penalty { strength: R::from_f64(strength), relative: penalties };
-                let factor = centred.normal.solve(penalty, coefficients, &mut arena)?;
-                *centre = centred.normal.centre(&factor, penalty, arena)?;
+                let factor = centred.normal.solve(penalty, coefficients, &mut arena);
+                *centre = centred.normal.centre(&factor, penalty, arena);
             }
         }
-        Ok(centres)
+        centres
     }
 }
 
@@ -96,23 +95,23 @@ pub(crate) fn pooled<R: Real>(
     mean: PerChannel<R>,
     variance: PerChannel<R>,
     arena: &mut Arena<'_, R>,
-) -> Result<Outcome<R>, Error> {
+) -> Outcome<R> {
     let each = groups.layout.coefficients();
-    let coefficients = arena.take(FITS * each)?;
-    let train = arena.take(groups.layout.len())?;
+    let coefficients = arena.take(FITS * each);
+    let train = arena.take(groups.layout.len());
     let mut errors = Errors::default();
     // Sums of f - b'p over the folds, b from the others.
     let mut crossed = [PerChannel::default(); FITS];
     for (fold, held_out) in groups.each() {
-        let train = groups.train(&[fold], train)?;
-        groups.fit(&MIXED, &train, coefficients, arena)?;
+        let train = groups.train(&[fold], train);
+        groups.fit(&MIXED, &train, coefficients, arena);
         errors.add(&train, &held_out, rows(coefficients, each));
         for (crossed, b) in crossed.iter_mut().zip(rows(coefficients, each)) {
             *crossed += held_out.residual_totals(b);
         }
     }
-    let all = groups.train(&[], train)?;
-    let centres = groups.fit(&MIXED, &all, coefficients, arena)?;
+    let all = groups.train(&[], train);
+    let centres = groups.fit(&MIXED, &all, coefficients, arena);
     let (n, inverse) = (all.count(), R::ONE / all.count());
     let mut corrections = [PerChannel::default(); FITS];
     let mut discounts = [PerChannel::default(); FITS];
@@ -129,23 +128,19 @@ pub(crate) fn pooled<R: Real>(
         *own = *own * factor * centre.inflation;
     }
     let (correction, variance) = mixture.estimate(errors.plain * factor, own);
-    Ok(Outcome { correction, variance: Some(variance) })
+    Outcome { correction, variance: Some(variance) }
 }
 
 /// What is added to the plain `mean`, unbiased, of two folds, or three or more.
-pub(crate) fn nested<R: Real>(
-    groups: &Groups<'_, R>,
-    mean: PerChannel<R>,
-    arena: &mut Arena<'_, R>,
-) -> Result<Outcome<R>, Error> {
+pub(crate) fn nested<R: Real>(groups: &Groups<'_, R>, mean: PerChannel<R>, arena: &mut Arena<'_, R>) -> Outcome<R> {
     // With two folds no third is left to judge a fit: one ridge it is.
     let is_fixed = groups.folds < 3 || matches!(groups.config.ridge, Ridge::Fixed(_));
     let fixed = [ridge::single::<R>(groups.config.ridge)];
     let strengths: &[f64] = if is_fixed { &fixed } else { &MIXED };
     let alone = (PerChannel::default(), [R::ONE, R::ZERO].map(PerChannel::all));
     let (each, columns) = (groups.layout.coefficients(), groups.layout.columns);
-    let coefficients = arena.take(FITS * each)?;
-    let train = arena.take(groups.layout.len())?;
+    let coefficients = arena.take(FITS * each);
+    let train = arena.take(groups.layout.len());
     let (mut sums, mut press) = (PerChannel::default(), PerChannel::default());
     let (mut count, others) = (R::ZERO, R::from_usize(groups.filled().saturating_sub(1)));
     for (fold, held_out) in groups.each() {
@@ -154,16 +149,16 @@ pub(crate) fn nested<R: Real>(
         let mut discounts = [R::ZERO; FITS];
         // Where there is one fit there is nothing to judge.
         for (other, judging) in groups.each().filter(|&(other, _)| other != fold && !is_fixed) {
-            let train = groups.train(&[fold, other], train)?;
-            let centres = groups.fit(strengths, &train, coefficients, arena)?;
+            let train = groups.train(&[fold, other], train);
+            let centres = groups.fit(strengths, &train, coefficients, arena);
             errors.add(&train, &judging, rows(coefficients, each));
             for (discount, centre) in discounts.iter_mut().zip(centres) {
                 *discount += centre.discount();
             }
         }
         let discounts = discounts.map(|total| PerChannel::all(total / others));
-        let train = groups.train(&[fold], train)?;
-        let centres = groups.fit(strengths, &train, coefficients, arena)?;
+        let train = groups.train(&[fold], train);
+        let centres = groups.fit(strengths, &train, coefficients, arena);
         let (mut inflation, weights) = if is_fixed { alone } else { errors.weigh(&discounts) };
         let mut kept = weights;
         if !is_fixed {
@@ -187,7 +182,7 @@ pub(crate) fn nested<R: Real>(
         press += held_out.residual_squares(train.intercepts(b), b) * inflation;
     }
     let correction = sums.map(|sum| sum / count) - mean;
-    Ok(Outcome { correction, variance: Some(press * result::press_factor(count)) })
+    Outcome { correction, variance: Some(press * result::press_factor(count)) }
 }
 
 /// Takes from fits what [`Centre::independence`] says; the mean gets it.

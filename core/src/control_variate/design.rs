@@ -5,13 +5,10 @@ use super::per_channel::PerChannel;
 use super::samples::{Reader, Subset};
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS};
-use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::matrix::{Panel, Triangle, first_mut, from};
-use crate::real::Real;
-
-/// The size of a control function about its mean, in epsilons of its size about zero, that is rounding noise.
-const NOISE: f64 = 64.0;
+use crate::real::{Real, rounding};
+use core::ops::Deref;
 
 /// The design matrix and the values, eight samples to a panel. Unused lanes of the last panel are zero.
 pub(crate) struct Design<'a, R> {
@@ -55,27 +52,25 @@ impl<R: Real> Units<R> {
     }
 
     /// A length stored in other units, in these.
-    #[inline]
     pub(crate) fn converted(&self, length: R, other: &Self) -> R {
         if self.exponent == other.exponent { length } else { length.scale(other.exponent - self.exponent) }
     }
 
     /// A value stored in other units, in these.
-    #[inline]
     pub(crate) fn relative(&self, stored: R, other: &Self) -> R {
         self.converted(other.offset + stored, other) - self.offset
     }
 }
 
-impl<'a, R: Real> Design<'a, R> {
-    /// Numbers that a design of `n` samples takes from its arena.
-    pub(crate) fn size(n: usize, columns: usize, channels: usize) -> Option<usize> {
-        let lanes = n.div_ceil(LANES).checked_mul(LANES)?;
-        lanes.checked_mul(columns.checked_add(channels)?)?.checked_add(columns)
-    }
+/// Numbers that a design of `n` samples takes from its arena.
+pub(crate) fn size(n: usize, columns: usize, channels: usize) -> Option<usize> {
+    let lanes = n.div_ceil(LANES).checked_mul(LANES)?;
+    lanes.checked_mul(columns.checked_add(channels)?)?.checked_add(columns)
+}
 
+impl<'a, R: Real> Design<'a, R> {
     /// Evaluates the basis at the samples of a subset, which were checked before. With `centre`, columns and values
-    /// have mean zero; without, columns are as they are, and values relative to the first sample.
+    /// have mean zero; without, columns are as they are, and values relative to the first sample. None without a sample.
     // See `Reader`; without it on what follows, estimates of one pixel take 9 to 19 % more instructions.
     #[inline(always)]
     pub(crate) fn load(
@@ -85,20 +80,20 @@ impl<'a, R: Real> Design<'a, R> {
         subset: Subset,
         centre: bool,
         arena: &mut Arena<'a, R>,
-    ) -> Result<Self, Error> {
+    ) -> Option<Self> {
         let channels = reader.channels();
         let count = reader.count(subset).div_ceil(LANES);
-        let mut panels = Panel::new(arena.take_lanes(count.checked_mul(columns).ok_or(Error::Memory)?)?, columns);
-        let mut values = Panel::new(arena.take_lanes(count.checked_mul(channels).ok_or(Error::Memory)?)?, channels);
-        let column_means = arena.zeros(columns)?;
+        let mut panels = Panel::new(arena.take_lanes(count * columns), columns);
+        let mut values = Panel::new(arena.take_lanes(count * channels), channels);
+        let column_means = arena.zeros(columns);
         let mut units = units(reader, subset);
         let factors = units.map(|unit| R::ONE.scale(-unit.exponent));
         let mut x = [[R::ZERO; LANES]; MAX_DIMS];
         let mut h = [[R::ZERO; LANES]; Config::MAX_CONTROLS];
         let mut f = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
-        let (mut column_panels, mut value_panels) = (panels.rows_mut(), values.rows_mut());
         let (mut next, mut n) = (0, 0);
-        loop {
+        let mut column_panels = panels.rows_mut();
+        for values in values.rows_mut() {
             // Lanes that are not filled hold an earlier panel's samples, in range; they are cleared below.
             let filled = reader.panel(subset, &mut next, &mut x, &mut h, &mut f);
             if filled == 0 {
@@ -108,13 +103,13 @@ impl<'a, R: Real> Design<'a, R> {
             if let Some(panel) = column_panels.next() {
                 reader.columns(basis, &x, &h, panel);
             }
-            let values = value_panels.next().into_iter().flatten();
-            for (((out, f), &factor), unit) in values.zip(&f).zip(&factors).zip(&units) {
+            for (((out, f), &factor), unit) in values.iter_mut().zip(&f).zip(&factors).zip(&units) {
                 *out = f.map(|f| f * factor - unit.offset);
             }
         }
+        drop(column_panels);
         if n == 0 {
-            return Err(Error::NoSamples);
+            return None;
         }
         panels.truncate(n.div_ceil(LANES));
         values.truncate(n.div_ceil(LANES));
@@ -133,7 +128,7 @@ impl<'a, R: Real> Design<'a, R> {
             }
         }
         let (panels, values) = (panels.into_shared(), values.into_shared());
-        Ok(Self { n, columns, channels, panels, values, column_means, units })
+        Some(Self { n, columns, channels, panels, values, column_means, units })
     }
 
     /// The panels one by one: columns and values of eight samples.
@@ -186,7 +181,6 @@ impl<'a, R: Real> Design<'a, R> {
 }
 
 /// Writes sums over lanes to places `first` and the next of a row.
-#[inline]
 fn put<R: Real>(row: &mut [R], first: usize, sums: &[Lanes<R>; 2]) {
     for (out, sum) in row.iter_mut().skip(first).zip(sums) {
         *out = lanes::sum(sum);
@@ -194,8 +188,7 @@ fn put<R: Real>(row: &mut [R], first: usize, sums: &[Lanes<R>; 2]) {
 }
 
 /// The sum of squares of group `index` of every panel.
-#[inline]
-pub(crate) fn square<R: Real>(panels: &Panel<&[Lanes<R>]>, index: usize) -> R {
+pub(crate) fn square<R: Real>(panels: &Panel<impl Deref<Target = [Lanes<R>]>>, index: usize) -> R {
     let mut total = [R::ZERO; LANES];
     for values in panels.column(index) {
         total = lanes::plus_product(total, *values, *values);
@@ -204,7 +197,6 @@ pub(crate) fn square<R: Real>(panels: &Panel<&[Lanes<R>]>, index: usize) -> R {
 }
 
 /// Subtracts each column's mean, and writes it to `means`.
-#[inline]
 fn centre<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means: &mut [R]) {
     let inverse = R::ONE / R::from_usize(n);
     for (j, mean) in means.iter_mut().enumerate() {
@@ -224,8 +216,8 @@ fn centre<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means: &mut [R
 /// the values.
 fn clear_constant<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means: &[R], integrals: &[f32]) {
     for (j, (&mean, &integral)) in means.iter().zip(integrals).enumerate() {
-        let noise = R::from_f64(NOISE) * R::EPSILON * (mean.abs() + R::from_f32(integral).abs());
-        if (square(&panels.view(), j) / R::from_usize(n)).sqrt() <= noise {
+        let noise = rounding::<R>() * (mean.abs() + R::from_f32(integral).abs());
+        if (square(panels, j) / R::from_usize(n)).sqrt() <= noise {
             for column in panels.column_mut(j) {
                 *column = [R::ZERO; LANES];
             }
@@ -234,7 +226,6 @@ fn clear_constant<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means:
 }
 
 /// Groups `first` and the next; zero where there is none.
-#[inline]
 fn two<R: Real>(groups: &[Lanes<R>], first: usize) -> [Lanes<R>; 2] {
     match from(groups, first) {
         [a, b, ..] => [*a, *b],
@@ -244,7 +235,6 @@ fn two<R: Real>(groups: &[Lanes<R>], first: usize) -> [Lanes<R>; 2] {
 }
 
 /// Zeroes the lanes after sample `n`, of which the last panel holds some.
-#[inline]
 fn clear_unused<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize) {
     let used = n % LANES;
     if used == 0 {
@@ -259,7 +249,6 @@ fn clear_unused<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize) {
 
 /// Where the stored values' zero and unit lie: at the first sample, so that constants are exact, and, for a type whose
 /// range squares could leave, at a power of two near the largest value.
-#[inline]
 pub(crate) fn units<R: Real>(reader: &Reader<'_>, subset: Subset) -> [Units<R>; Config::MAX_CHANNELS] {
     let mut units = [Units::default(); Config::MAX_CHANNELS];
     if R::NARROW {

@@ -12,7 +12,6 @@ use super::ridge::{self, CHOICES, MAX_FITS, MIXED};
 use super::trust::{self, Centre, Judge, Mixture};
 use crate::arena::Arena;
 use crate::basis::Basis;
-use crate::error::Error;
 use crate::matrix::{at, packed_len};
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
@@ -50,14 +49,14 @@ pub(crate) fn fit<'a, R: Real>(
     plan: &Plan,
     coefficients: Option<&mut [R]>,
     arena: &mut Arena<'a, R>,
-) -> Result<Blend<R>, Error> {
-    let penalties = arena.take(design.columns)?;
+) -> Blend<R> {
+    let penalties = arena.take(design.columns);
     // Penalties of control functions come from the matrix, but the dual has no control functions.
     let system = if plan.dual {
         ridge::penalties(config, basis, |_| R::ZERO, penalties);
-        System::Dual(Dual::new(design, penalties, arena)?)
+        System::Dual(Dual::new(design, penalties, arena))
     } else {
-        let normal = Normal::of(design, arena)?;
+        let normal = Normal::of(design, arena);
         let per_sample = R::ONE / normal.count;
         ridge::penalties(config, basis, |j| normal.gram.diagonal(j) * per_sample, penalties);
         let factor = ridge::control_factor::<R>(config);
@@ -77,14 +76,14 @@ pub(crate) fn fit<'a, R: Real>(
     let is_told = !is_least_squares || design.n > design.columns + 1;
     let leave_one_out = is_told || strengths.len() > 1;
     let each = design.columns * design.channels;
-    let kept = arena.take(if coefficients.is_some() { strengths.len() * each } else { 0 })?;
+    let kept = arena.take(if coefficients.is_some() { strengths.len() * each } else { 0 });
     let mut fits = [Fit::default(); MAX_FITS];
     for (index, (&strength, fit)) in strengths.iter().zip(&mut fits).enumerate() {
         let kept = kept.get_mut(index * each..(index + 1) * each).filter(|kept| !kept.is_empty());
         let penalty = Penalty { strength: R::from_f64(strength), relative: penalties };
         *fit = match &system {
-            System::Normal(normal) => normal.fit(design, penalty, leave_one_out, kept, arena.scratch())?,
-            System::Dual(dual) => dual.fit(design, penalty, leave_one_out, kept, arena.scratch())?,
+            System::Normal(normal) => normal.fit(design, penalty, leave_one_out, kept, arena.scratch()),
+            System::Dual(dual) => dual.fit(design, penalty, leave_one_out, kept, arena.scratch()),
         };
     }
     let plain = plain_press(design);
@@ -104,7 +103,7 @@ pub(crate) fn fit<'a, R: Real>(
             }
         }
     }
-    Ok(Blend { fits, mixture, is_told })
+    Blend { fits, mixture, is_told }
 }
 
 /// The plain mean of `n` samples and the first `used` fits, weighed. Fits that are to correct other samples are trusted

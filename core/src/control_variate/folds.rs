@@ -25,7 +25,6 @@ impl Fold {
         self.end - self.start
     }
 
-    #[inline]
     pub(crate) fn contains(&self, index: usize) -> bool {
         (self.start..self.end).contains(&index)
     }
@@ -38,7 +37,6 @@ const RUN: u64 = 4;
 ///
 /// Runs grow with the stream: with P the power of two next to the number of folds, the first 4 P samples are P runs of
 /// 4, the next 4 P samples are P runs too, the next 8 P, and so on, and runs go to the folds in turn.
-#[inline]
 pub(crate) fn of_stream(index: u64, folds: NonZeroUsize) -> usize {
     let index = index / RUN;
     let bits = folds.get().next_power_of_two().trailing_zeros();

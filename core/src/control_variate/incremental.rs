@@ -13,7 +13,7 @@ use super::result::{self, Outcome};
 use super::sums::{self, Change, Layout};
 use super::{ridge, trust};
 use crate::arena::Arena;
-use crate::basis::Basis;
+use crate::basis::{Basis, Shape};
 use crate::matrix::row_at;
 use crate::real::Real;
 use crate::rows::rows_mut;
@@ -89,37 +89,40 @@ impl<R: Real> Progress<R> {
     }
 
     /// Renews the fits if they are due.
-    pub(crate) fn refit(&mut self, samples: u64, config: &Config, layout: Layout, sums: &[R], rest: &mut [R]) {
+    pub(crate) fn refit(
+        &mut self,
+        samples: u64,
+        config: &Config,
+        shape: Shape,
+        layout: Layout,
+        sums: &[R],
+        rest: &mut [R],
+    ) {
         if samples < self.next_fit.max(2) {
             return;
         }
         // `Centred::solve` takes strengths per sample.
         let strengths = STRENGTHS.map(|own| R::from_f64(ridge::strength::<R>(config.ridge, own / samples as f64)));
-        let mut solve = || {
-            let sums = layout.group(sums, 0).ok()?;
-            let mut arena = Arena::new(rest);
-            let coefficients = arena.take(FITS * layout.coefficients()).ok()?;
-            let penalties = arena.take(layout.columns).ok()?;
-            if self.next_fit == 0 || config.controls > 0 {
-                // They stay in the buffer: only those of control functions depend on the samples.
-                let mut basis = Basis::empty();
-                basis.set(config.basis, config.checked_shape().ok()?).ok()?;
-                ridge::penalties(config, &basis, |j| sums.mean_square(j), penalties);
-            }
-            let centred = Centred::new(&sums, &mut arena).ok()?;
-            let fits = rows_mut(coefficients, layout.coefficients()).zip(strengths).zip(&mut self.intercepts);
-            for ((coefficients, strength), intercepts) in fits {
-                let penalty = Penalty { strength, relative: penalties };
-                centred.normal.solve(penalty, coefficients, &mut arena.scratch()).ok()?;
-                *intercepts = centred.intercepts(coefficients);
-            }
-            self.mean = centred.value_means;
-            self.next_fit = samples.saturating_add((samples / 16).max(1));
-            Some(())
-        };
-        // The buffer was measured for this, so there is nothing to fail; fits that are not renewed are still valid
-        // ones.
-        let _: Option<()> = solve();
+        let sums = layout.group(sums, 0);
+        // The buffer was measured for this.
+        let Ok(mut arena) = Arena::new(rest, Some(len(layout))) else { return };
+        let coefficients = arena.take(FITS * layout.coefficients());
+        let penalties = arena.take(layout.columns);
+        if self.next_fit == 0 || config.controls > 0 {
+            // They stay in the buffer: only those of control functions depend on the samples.
+            let mut basis = Basis::empty();
+            basis.set(config.basis, shape);
+            ridge::penalties(config, &basis, |j| sums.mean_square(j), penalties);
+        }
+        let centred = Centred::new(&sums, &mut arena);
+        let fits = rows_mut(coefficients, layout.coefficients()).zip(strengths).zip(&mut self.intercepts);
+        for ((coefficients, strength), intercepts) in fits {
+            let penalty = Penalty { strength, relative: penalties };
+            centred.normal.solve(penalty, coefficients, &mut arena.scratch());
+            *intercepts = centred.intercepts(coefficients);
+        }
+        self.mean = centred.value_means;
+        self.next_fit = samples.saturating_add((samples / 16).max(1));
     }
 
     /// Adds another estimate's corrected values, of `samples` values that were changed since.

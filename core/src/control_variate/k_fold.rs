@@ -4,7 +4,7 @@
 //! count for less.
 
 use super::config::{Config, Solver};
-use super::design::Design;
+use super::design::{self, Design};
 use super::fitter;
 use super::folds::Fold;
 use super::per_channel::PerChannel;
@@ -20,10 +20,10 @@ use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 
 /// Numbers that [`estimate`] takes from its arena.
-pub(crate) fn size<R: Real>(config: &Config, columns: usize, channels: usize, n: usize) -> Option<usize> {
+pub(crate) fn size(config: &Config, columns: usize, channels: usize, n: usize) -> Option<usize> {
     // The largest training set leaves out the smallest fold, and the held-out fold is no larger than that.
     let train = n - n / config.fold_count();
-    let designs = Design::<R>::size(train, columns, channels)?.checked_mul(2)?;
+    let designs = design::size(train, columns, channels)?.checked_mul(2)?;
     let primal = fitter::size(train, false, columns, channels)?;
     // Training sets differ in size, and skipped samples make them smaller: some may be short where the largest is not.
     let short = if config.solver == Solver::Dual { train } else { train.min(columns) };
@@ -42,18 +42,18 @@ pub(crate) fn estimate<R: Real>(
 ) -> Result<Outcome<R>, Error> {
     let channels = whole.channels;
     let [mut totals, mut squares, mut inflations] = [PerChannel::default(); 3];
-    let coefficients = arena.take(whole.columns * channels)?;
+    let coefficients = arena.take(whole.columns * channels);
     for index in 0..config.fold_count().get() {
         let fold = Fold::new(index, config.fold_count(), reader.len());
         let mut arena = arena.scratch();
-        let held_out = load(reader, basis, whole.columns, Subset::Fold(fold), false, &mut arena)?;
+        let [held_out, train] = [(Subset::Fold(fold), false), (Subset::Complement(fold), true)]
+            .map(|(subset, centre)| Design::load(reader, basis, whole.columns, subset, centre, &mut arena));
         let Some(held_out) = held_out else { continue };
-        let train = load(reader, basis, whole.columns, Subset::Complement(fold), true, &mut arena)?;
         coefficients.fill(R::ZERO);
         let mut inflation = PerChannel::all(R::ONE);
         if let Some(train) = train.filter(|train| train.n > 1) {
             let plan = Plan::new(config, basis.columns(), train.n)?;
-            let blend = fitter::fit(&train, config, basis, &plan, Some(coefficients), &mut arena)?;
+            let blend = fitter::fit(&train, config, basis, &plan, Some(coefficients), &mut arena);
             inflation = blend.inflation(R::from_usize(train.n));
             // Everything meets in the units of all samples, which are the largest.
             let units = train.units.iter().zip(&whole.units);
@@ -85,20 +85,4 @@ pub(crate) fn estimate<R: Real>(
     let spread = sums::spread(squares, totals, correction) * inflations;
     let variance = spread.map(|spread| spread / (n * n * (n - R::ONE).max(R::ONE)));
     Ok(Outcome { correction, variance: Some(variance) })
-}
-
-/// [`Design::load`], of which the two callers share one copy; None without a sample.
-#[inline(never)]
-fn load<'a, R: Real>(
-    reader: &Reader<'_>,
-    basis: &Basis,
-    columns: usize,
-    subset: Subset,
-    centre: bool,
-    arena: &mut Arena<'a, R>,
-) -> Result<Option<Design<'a, R>>, Error> {
-    match Design::load(reader, basis, columns, subset, centre, arena) {
-        Err(Error::NoSamples) => Ok(None),
-        design => design.map(Some),
-    }
 }

@@ -10,7 +10,6 @@ use core::ops::{Add, AddAssign, Deref, DerefMut, Index, IndexMut, Mul, Sub};
 pub(crate) struct PerChannel<R>(pub(crate) [R; Config::MAX_CHANNELS]);
 
 impl<R> PerChannel<R> {
-    #[inline]
     pub(crate) fn map<T>(self, f: impl FnMut(R) -> T) -> PerChannel<T> {
         PerChannel(self.0.map(f))
     }
@@ -18,13 +17,11 @@ impl<R> PerChannel<R> {
 
 impl<R: Real> PerChannel<R> {
     /// The same for all.
-    #[inline]
     pub(crate) fn all(value: R) -> Self {
         Self([value; Config::MAX_CHANNELS])
     }
 
     /// What `f` says of each of so many channels.
-    #[inline]
     pub(crate) fn of(channels: usize, f: impl Fn(usize) -> R) -> Self {
         let mut all = Self::default();
         for (channel, out) in all.iter_mut().enumerate().take(channels) {
@@ -34,7 +31,6 @@ impl<R: Real> PerChannel<R> {
     }
 
     /// A row that has one number for each channel.
-    #[inline]
     pub(crate) fn from_row(row: &[R]) -> Self {
         let mut all = Self::default();
         copy(&mut *all, row);
@@ -42,7 +38,6 @@ impl<R: Real> PerChannel<R> {
     }
 
     /// What `f` makes of two numbers of each channel.
-    #[inline]
     pub(crate) fn zip(mut self, other: Self, f: impl Fn(R, R) -> R) -> Self {
         for (a, b) in self.iter_mut().zip(other.0) {
             *a = f(*a, b);
@@ -56,7 +51,6 @@ macro_rules! operator {
         impl<R: Real> $trait for PerChannel<R> {
             type Output = Self;
 
-            #[inline]
             fn $name(self, other: Self) -> Self {
                 self.zip(other, R::$name)
             }
@@ -71,14 +65,12 @@ operator! { Mul mul }
 impl<R: Real> Mul<R> for PerChannel<R> {
     type Output = Self;
 
-    #[inline]
     fn mul(self, factor: R) -> Self {
         self.map(|value| value * factor)
     }
 }
 
 impl<R: Real> AddAssign for PerChannel<R> {
-    #[inline]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
@@ -87,14 +79,12 @@ impl<R: Real> AddAssign for PerChannel<R> {
 impl<R> Deref for PerChannel<R> {
     type Target = [R; Config::MAX_CHANNELS];
 
-    #[inline]
     fn deref(&self) -> &Self::Target {
         &self.0
     }
 }
 
 impl<R> DerefMut for PerChannel<R> {
-    #[inline]
     fn deref_mut(&mut self) -> &mut Self::Target {
         &mut self.0
     }
@@ -105,14 +95,12 @@ impl<R> DerefMut for PerChannel<R> {
 impl<R> Index<usize> for PerChannel<R> {
     type Output = R;
 
-    #[inline]
     fn index(&self, channel: usize) -> &R {
         &self.0[channel % Config::MAX_CHANNELS]
     }
 }
 
 impl<R> IndexMut<usize> for PerChannel<R> {
-    #[inline]
     fn index_mut(&mut self, channel: usize) -> &mut R {
         &mut self.0[channel % Config::MAX_CHANNELS]
     }

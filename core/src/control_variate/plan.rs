@@ -81,7 +81,6 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    #[inline]
     pub(crate) fn new(config: &Config, functions: usize, n: usize) -> Result<Self, Error> {
         let columns = config.controls + functions;
         let dual = match config.solver {

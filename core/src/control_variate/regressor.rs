@@ -79,7 +79,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         for (value, &offset) in values.iter_mut().zip(&self.offset) {
             *value -= f64::from(offset);
         }
-        self.sums_mut()?.add(p.as_flattened_mut(), &mut values);
+        self.sums_mut().add(p.as_flattened_mut(), &mut values);
         self.samples += 1;
         Ok(())
     }
@@ -105,15 +105,16 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         for (unit, offset) in units.iter_mut().zip(self.offset) {
             unit.offset = f64::from(offset);
         }
-        let summary = Summary::of_sums(iter::once(self.sums()?), self.samples, CHANNELS, units);
+        let summary = Summary::of_sums(iter::once(self.sums()), self.samples, CHANNELS, units);
         let mut penalties = [0.0; TERMS];
         let penalties = first_mut(&mut penalties, self.basis.columns());
         self.basis.penalties(penalties);
         let penalty = Penalty { strength: f64::from(strength), relative: penalties };
-        // Enough for `normal::len`, whatever the sizes are.
+        // Enough whatever the sizes are.
         let mut workspace = [[[0.0; TERMS]; TERMS]; 4];
-        let arena = &mut Arena::new(workspace.as_flattened_mut().as_flattened_mut());
-        Ok(summary.finish(normal::least_squares(&self.sums()?, penalty, arena)?))
+        let needed = normal::len(self.sums().layout());
+        let arena = &mut Arena::new(workspace.as_flattened_mut().as_flattened_mut(), Some(needed))?;
+        Ok(summary.finish(normal::least_squares(&self.sums(), penalty, arena)))
     }
 
     /// Adds all samples of another regressor.
@@ -131,20 +132,20 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         for (shift, (theirs, ours)) in change.shift.iter_mut().zip(other.offset.iter().zip(&self.offset)) {
             *shift = f64::from(*theirs) - f64::from(*ours);
         }
-        self.sums_mut()?.merge(&other.sums()?, &change);
+        self.sums_mut().merge(&other.sums(), &change);
         self.samples = self.samples.saturating_add(other.samples);
         Ok(())
     }
 
-    fn sums(&self) -> Result<Sums<&[f64]>, Error> {
-        let gram = Triangle::new(self.gram.as_flattened(), TERMS)?;
+    fn sums(&self) -> Sums<&[f64]> {
+        let gram = Triangle::new(self.gram.as_flattened(), TERMS);
         let rhs = Panel::new(self.rhs.as_flattened(), CHANNELS);
-        Ok(Sums { form: Form::Products, gram, rhs, square: &self.square })
+        Sums { form: Form::Products, gram, rhs, square: &self.square }
     }
 
-    fn sums_mut(&mut self) -> Result<Sums<&mut [f64]>, Error> {
-        let gram = Triangle::new(self.gram.as_flattened_mut(), TERMS)?;
+    fn sums_mut(&mut self) -> Sums<&mut [f64]> {
+        let gram = Triangle::new(self.gram.as_flattened_mut(), TERMS);
         let rhs = Panel::new(self.rhs.as_flattened_mut(), CHANNELS);
-        Ok(Sums { form: Form::Products, gram, rhs, square: &mut self.square })
+        Sums { form: Form::Products, gram, rhs, square: &mut self.square }
     }
 }

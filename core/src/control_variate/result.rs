@@ -27,14 +27,12 @@ pub(crate) fn plain_variance<R: Real>(design: &Design<'_, R>) -> Option<PerChann
 
 /// What a sum of squared deviations of `n` values is divided by to be the variance of their mean; for one, which has
 /// none, still no zero.
-#[inline]
 pub(crate) fn mean_divisor<R: Real>(n: R) -> R {
     n * (n - R::ONE).max(R::ONE)
 }
 
 /// What a sum of squared leave-one-out residuals of `n` samples, at least two, is multiplied by to be a variance: exact
 /// for the plain mean.
-#[inline]
 pub(crate) fn press_factor<R: Real>(n: R) -> R {
     (n - R::ONE) / (n * n * n)
 }

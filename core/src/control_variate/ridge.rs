@@ -48,7 +48,6 @@ pub(crate) fn least_squares<R: Real>(ridge: Ridge) -> f64 {
 }
 
 /// Relative penalties of control functions and basis, where `mean_square` is that of a control function's column.
-#[inline]
 pub(crate) fn penalties<R: Real>(config: &Config, basis: &Basis, mean_square: impl Fn(usize) -> R, out: &mut [R]) {
     let (controls, functions) = halves_mut(out, config.controls);
     for (j, penalty) in controls.iter_mut().enumerate() {

@@ -54,7 +54,6 @@ pub(crate) enum Subset {
 }
 
 impl Subset {
-    #[inline]
     fn contains(self, index: usize) -> bool {
         match self {
             Subset::All => true,
@@ -86,7 +85,6 @@ pub(crate) struct Sample<'a> {
 impl<'a> Reader<'a> {
     /// # Errors
     /// [`Error::Range`] if the arrays' lengths do not belong together, [`Error::NoSamples`] if they are empty.
-    #[inline]
     pub(crate) fn new(config: &Config, samples: Samples<'a>) -> Result<Self, Error> {
         let n = samples.f.len().checked_div(config.channels).unwrap_or(0);
         if n == 0 && samples.f.is_empty() {
@@ -119,7 +117,6 @@ impl<'a> Reader<'a> {
     }
 
     /// How many samples the arrays hold.
-    #[inline]
     pub(crate) fn len(&self) -> usize {
         self.n
     }
@@ -134,13 +131,11 @@ impl<'a> Reader<'a> {
     }
 
     /// How many values of a sample are regressed.
-    #[inline]
     pub(crate) fn channels(&self) -> usize {
         if self.luminance { 1 } else { self.inputs }
     }
 
     /// Sample `index`, whatever it holds.
-    #[inline]
     pub(crate) fn get(&self, index: usize) -> Sample<'a> {
         let start = index * self.stride;
         Sample {
@@ -151,7 +146,6 @@ impl<'a> Reader<'a> {
     }
 
     /// Checks every sample. After this, all samples that [`Reader::is_used`] accepts are finite and in range.
-    #[inline]
     pub(crate) fn check(&self) -> Result<(), Error> {
         // Branch-free over the values: one flag for everything, and the reason is looked for only if it is down.
         let mut fine = true;
@@ -184,13 +178,11 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether sample `index` of the subset counts.
-    #[inline]
     fn is_used(&self, index: usize, subset: Subset) -> bool {
         subset.contains(index) && (!self.skip || self.get(index).is_finite())
     }
 
     /// Calls `visit` with each used sample in order and returns their number.
-    #[inline]
     pub(crate) fn each(&self, subset: Subset, mut visit: impl FnMut(&Sample<'a>)) -> usize {
         let mut used = 0;
         for index in 0..self.n {
@@ -241,13 +233,11 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether samples are positions and values, all of which count.
-    #[inline]
     pub(crate) fn is_simple(&self) -> bool {
         !self.skip && !self.luminance && self.controls == 0
     }
 
     /// The values of a sample that are regressed: its channels, or its luminance.
-    #[inline]
     pub(crate) fn values<R: Real>(&self, sample: &Sample<'_>) -> [R; Config::MAX_CHANNELS] {
         let mut values = [R::ZERO; Config::MAX_CHANNELS];
         if self.luminance {
@@ -262,7 +252,6 @@ impl<'a> Reader<'a> {
 
     /// Writes the positions of samples from each `first` on to the lanes from `lane` on, a group of lanes for each
     /// step.
-    #[inline]
     pub(crate) fn put_positions<R: Real, const L: usize>(
         &self,
         first: &[usize; LANES],
@@ -295,7 +284,6 @@ impl<'a> Reader<'a> {
     }
 
     /// All values, as they were given.
-    #[inline]
     pub(crate) fn inputs(&self) -> &'a [f32] {
         self.samples.f
     }
@@ -342,19 +330,16 @@ impl<'a> Reader<'a> {
 
 impl<'a> Sample<'a> {
     /// Without control functions.
-    #[inline]
     pub(crate) fn new(u: &'a [f32], f: &'a [f32]) -> Self {
         Self { u, f, h: &[] }
     }
 
-    #[inline]
     fn is_finite(&self) -> bool {
         [self.u, self.f, self.h].iter().all(|values| values.iter().all(|value| value.is_finite()))
     }
 
     /// # Errors
     /// [`Error::NotFinite`], or [`Error::Range`] for a position outside [0, 1].
-    #[inline]
     pub(crate) fn check(&self) -> Result<(), Error> {
         if !self.is_finite() {
             return Err(Error::NotFinite);
@@ -363,7 +348,6 @@ impl<'a> Sample<'a> {
     }
 
     /// Writes the position and the control functions to lane `lane`.
-    #[inline]
     pub(crate) fn put<R: Real, const L: usize>(
         &self,
         lane: usize,
@@ -412,7 +396,6 @@ fn transpose_exact<R: Real, const WIDTH: usize>(rows: &[f32], stride: usize, out
 }
 
 /// Rec. 709 luminance, rounded once.
-#[inline]
 fn luminance(rgb: &[f32]) -> f32 {
     let sum: f64 = rgb.iter().zip(LUMINANCE).map(|(&c, weight)| f64::from(c) * weight).sum();
     sum as f32

@@ -7,11 +7,10 @@
 use super::config::Config;
 use super::per_channel::PerChannel;
 use crate::basis::MAX_TERMS;
-use crate::error::Error;
 use crate::linalg::givens;
 use crate::matrix::{Panel, Triangle, copy, packed_len};
 use crate::real::Real;
-use crate::rows::{at, first, first_mut, from_mut, row_at, row_at_mut};
+use crate::rows::{at, first, first_mut, from_mut, halves, halves_mut, row_at, row_at_mut};
 use core::ops::{Deref, DerefMut};
 
 /// What is kept of the samples' rows.
@@ -57,32 +56,20 @@ impl Layout {
     }
 
     /// Group `index`.
-    ///
-    /// # Errors
-    /// [`Error::Memory`] if there are too few numbers.
-    pub(crate) fn group<'a, R>(&self, sums: &'a [R], index: usize) -> Result<Sums<&'a [R]>, Error> {
-        self.parts(row_at(sums, self.len(), index), <[R]>::split_at_checked)
+    pub(crate) fn group<'a, R: Real>(&self, sums: &'a [R], index: usize) -> Sums<&'a [R]> {
+        self.parts(row_at(sums, self.len(), index), halves)
     }
 
     /// Group `index`, to be changed.
-    ///
-    /// # Errors
-    /// As for [`Layout::group`].
-    #[inline]
-    pub(crate) fn group_mut<'a, R>(&self, sums: &'a mut [R], index: usize) -> Result<Sums<&'a mut [R]>, Error> {
-        self.parts(row_at_mut(sums, self.len(), index), <[R]>::split_at_mut_checked)
+    pub(crate) fn group_mut<'a, R: Real>(&self, sums: &'a mut [R], index: usize) -> Sums<&'a mut [R]> {
+        self.parts(row_at_mut(sums, self.len(), index), halves_mut)
     }
 
-    #[inline]
-    fn parts<R, S: Deref<Target = [R]>>(
-        &self,
-        group: S,
-        split: impl Fn(S, usize) -> Option<(S, S)>,
-    ) -> Result<Sums<S>, Error> {
-        let (gram, rest) = split(group, packed_len(self.terms())).ok_or(Error::Memory)?;
-        let (rhs, square) = split(rest, self.terms() * self.channels).ok_or(Error::Memory)?;
-        let (gram, rhs) = (Triangle::new(gram, self.terms())?, Panel::new(rhs, self.channels));
-        Ok(Sums { form: self.form, gram, rhs, square })
+    fn parts<R: Real, S: Deref<Target = [R]>>(&self, group: S, halves: impl Fn(S, usize) -> (S, S)) -> Sums<S> {
+        let (gram, rest) = halves(group, packed_len(self.terms()));
+        let (rhs, square) = halves(rest, self.terms() * self.channels);
+        let (gram, rhs) = (Triangle::new(gram, self.terms()), Panel::new(rhs, self.channels));
+        Sums { form: self.form, gram, rhs, square }
     }
 }
 
@@ -165,7 +152,6 @@ impl<R: Real, S: Deref<Target = [R]>> Sums<S> {
 
 impl<R: Real, S: DerefMut<Target = [R]>> Sums<S> {
     /// Adds a sample: its row, 1 first, and its values. Both are used up.
-    #[inline]
     pub(crate) fn add(&mut self, p: &mut [R], f: &mut [R]) {
         if self.form == Form::Factor {
             return givens::add_row(&mut self.gram, &mut self.rhs, &mut self.square, p, f);

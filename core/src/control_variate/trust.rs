@@ -58,7 +58,6 @@ pub(crate) struct Centre<R> {
 
 impl<R: Real> Centre<R> {
     /// Of a fit to `n` samples; with less than two nothing speaks against the fit.
-    #[inline]
     pub(crate) fn new(eccentricity: R, freedom: R, n: R) -> Self {
         let freedom = freedom.min(n - R::from_f64(1.5)).max(R::EPSILON);
         let f = eccentricity * (n - R::ONE - freedom) / freedom;
@@ -66,7 +65,6 @@ impl<R: Real> Centre<R> {
     }
 
     /// The logarithm of what trust in the fit is divided by because its samples lie to one side.
-    #[inline]
     pub(crate) fn discount(&self) -> R {
         let f = self.f * R::from_f64(1.0 / USUAL_F);
         if f <= R::ONE {
@@ -81,7 +79,6 @@ impl<R: Real> Centre<R> {
 
     /// What the fit adds to the mean, from what it does by its own estimate and by the one that leaves samples out, and
     /// the logarithm of what trust in that is divided by.
-    #[inline]
     pub(crate) fn judge(
         &self,
         in_sample: PerChannel<R>,
@@ -97,7 +94,6 @@ impl<R: Real> Centre<R> {
     /// square of the two's likelihood ratio, k (F - 1 - ln F).
     ///
     /// A fit to some folds that corrects another undoes what is even about all of them together.
-    #[inline]
     pub(crate) fn independence(&self) -> R {
         let f = self.f.max(R::from_f64(1e-12));
         if f >= R::ONE {
@@ -110,7 +106,6 @@ impl<R: Real> Centre<R> {
 }
 
 /// What few residual degrees of freedom, n - 1 - k, add to a variance that is estimated from residuals.
-#[inline]
 pub(crate) fn few_left<R: Real>(freedom: R, n: R) -> R {
     let two = R::ONE + R::ONE;
     let left = (n - R::ONE - freedom).max(R::from_f64(0.5));
@@ -121,7 +116,6 @@ pub(crate) fn few_left<R: Real>(freedom: R, n: R) -> R {
 
 /// The logarithm of what trust in a fit that adds `correction` to the mean is divided by; nothing for a mean without
 /// variance, which is exact.
-#[inline]
 fn surprise<R: Real>(correction: R, variance: R) -> R {
     let error = if variance > R::ZERO { variance.sqrt() } else { R::INFINITY };
     let errors = correction.abs() / error;
@@ -132,7 +126,6 @@ fn surprise<R: Real>(correction: R, variance: R) -> R {
 }
 
 /// The trust in the mean of `n` samples where fits were discounted.
-#[inline]
 fn prior<R: Real>(n: R) -> R {
     let square = n * n;
     R::from_f64(INFORMED_PRIOR) * (R::ONE + R::from_f64(FEW) / (square * square))
@@ -151,13 +144,11 @@ pub(crate) struct Judge<R> {
 
 impl<R: Real> Judge<R> {
     /// Where fits are discounted for where their samples lie and how far they move the mean.
-    #[inline]
     pub(crate) fn informed(n: R) -> Self {
         Self { n, power: n * R::from_f64(SHARPNESS), prior: prior(n) }
     }
 
     /// The weights of the plain mean and of the first `used` fits, from their errors and what else tells against a fit.
-    #[inline]
     pub(crate) fn weigh<const C: usize>(
         &self,
         plain: PerChannel<R>,

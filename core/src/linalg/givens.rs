@@ -6,11 +6,10 @@
 
 use crate::matrix::{Panel, Triangle, split_at};
 use crate::real::Real;
-use core::ops::DerefMut;
+use core::ops::{Deref, DerefMut};
 
 /// Rotates one row into the factor: `x` has one number for each column, `y` one for each right-hand side, of which
 /// `rhs` has a row for each column. `residual` gathers what no coefficient can explain. `x` and `y` are used up.
-#[inline]
 pub(crate) fn add_row<R: Real, S: DerefMut<Target = [R]>>(
     factor: &mut Triangle<S>,
     rhs: &mut Panel<S>,
@@ -40,8 +39,7 @@ pub(crate) fn add_row<R: Real, S: DerefMut<Target = [R]>>(
 }
 
 /// x := R^-1 x; a column with no pivot gets coefficient zero.
-#[inline]
-pub(crate) fn solve<R: Real>(factor: &Triangle<&[R]>, x: &mut [R]) {
+pub(crate) fn solve<R: Real>(factor: &Triangle<impl Deref<Target = [R]>>, x: &mut [R]) {
     for j in (0..x.len()).rev() {
         let Some((before, x_j)) = split_at(x, j) else { return };
         *x_j = quotient(*x_j, factor.diagonal(j));
@@ -52,7 +50,7 @@ pub(crate) fn solve<R: Real>(factor: &Triangle<&[R]>, x: &mut [R]) {
 }
 
 /// The squared length of R'^-1 x, which is x'A^-1 x for A = R'R; `x` is used up. A column with no pivot adds nothing.
-pub(crate) fn inverse_square<R: Real>(factor: &Triangle<&[R]>, x: &mut [R]) -> R {
+pub(crate) fn inverse_square<R: Real>(factor: &Triangle<impl Deref<Target = [R]>>, x: &mut [R]) -> R {
     let mut total = R::ZERO;
     for j in 0..x.len() {
         let Some((before, x_j)) = split_at(x, j) else { return total };
@@ -65,13 +63,11 @@ pub(crate) fn inverse_square<R: Real>(factor: &Triangle<&[R]>, x: &mut [R]) -> R
     total
 }
 
-#[inline]
 fn quotient<R: Real>(value: R, pivot: R) -> R {
     if pivot == R::ZERO { R::ZERO } else { value / pivot }
 }
 
 /// (c, s, r) with c a + s b = r and c b - s a = 0, without overflow.
-#[inline]
 fn rotation<R: Real>(a: R, b: R) -> (R, R, R) {
     let size = a.abs().max(b.abs());
     let (a, b) = (a / size, b / size);

@@ -2,24 +2,20 @@
 
 use crate::lanes::{self, LANES, Lanes, dot};
 use crate::matrix::{Triangle, from, split_at};
-use crate::real::Real;
+use crate::real::{Real, rounding};
 use crate::rows::part;
 use core::ops::{Deref, DerefMut};
 
-/// A pivot below this fraction of its diagonal entry, in units of the type's epsilon, is rounding noise. Its column
-/// then depends on earlier ones and gets coefficient zero.
-const DEPENDENT: f64 = 64.0;
-
 /// A factored matrix: L below the diagonal, and on it 1 / D.
 ///
-/// 1 / d_j is 0 for a column that depends on the columns before it: the solution then does not use it.
+/// 1 / d_j is 0 for a column that depends on the columns before it, so that its pivot is rounding noise: the solution
+/// then does not use it.
 pub(crate) struct Ldlt<S>(Triangle<S>);
 
 impl<R: Real, S: DerefMut<Target = [R]>> Ldlt<S> {
     /// Factors a matrix in place.
     #[inline(always)]
     pub(crate) fn new(mut matrix: Triangle<S>) -> Self {
-        let tolerance = R::from_f64(DEPENDENT) * R::EPSILON;
         for j in 0..matrix.order() {
             let Some((l, row, diagonal)) = matrix.split(j) else { break };
             // First v_k = d_k l_jk, which the later entries of the row need, then l_jk itself.
@@ -34,7 +30,7 @@ impl<R: Real, S: DerefMut<Target = [R]>> Ldlt<S> {
                 *value = l_jk;
                 lanes::keep_together();
             }
-            *diagonal = if pivot > tolerance * *diagonal { R::ONE / pivot } else { R::ZERO };
+            *diagonal = if pivot > rounding::<R>() * *diagonal { R::ONE / pivot } else { R::ZERO };
         }
         Self(matrix)
     }
@@ -48,7 +44,6 @@ impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
     }
 
     /// 1 / d_j.
-    #[inline]
     pub(crate) fn inverse_pivot(&self, j: usize) -> R {
         self.0.diagonal(j)
     }
@@ -76,7 +71,6 @@ impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
     }
 
     /// x := L'^-1 x.
-    #[inline]
     pub(crate) fn backward(&self, x: &mut [R]) {
         for j in (0..x.len()).rev() {
             let Some((before, &mut x_j)) = split_at(x, j) else { return };
@@ -87,7 +81,6 @@ impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
     }
 
     /// x := A^-1 x.
-    #[inline]
     pub(crate) fn solve(&self, x: &mut [R]) {
         self.forward(x);
         for (j, x_j) in x.iter_mut().enumerate() {
@@ -97,7 +90,6 @@ impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
     }
 
     /// Writes the diagonal of A^-1 to `diagonal`; `inverse` is scratch for L^-1.
-    #[inline]
     pub(crate) fn inverse_diagonal(&self, mut inverse: Triangle<&mut [R]>, diagonal: &mut [R]) {
         diagonal.fill(R::ZERO);
         for j in 0..self.0.order() {
@@ -122,8 +114,7 @@ impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
 // Without, and without it on `forward_each`, image fits take 2 % more instructions.
 #[inline(always)]
 pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
-    let tolerance = R::from_f64(DEPENDENT) * R::EPSILON;
-    let Ok(mut matrices) = Triangle::new(matrices, n) else { return };
+    let mut matrices = Triangle::new(matrices, n);
     for j in 0..n {
         let Some((l, row, diagonal)) = matrices.split(j) else { return };
         for k in 0..j {
@@ -138,7 +129,7 @@ pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
         }
         let inverse = lanes::divisor(&pivot).map(|pivot| R::ONE / pivot);
         for lane in 0..LANES {
-            diagonal[lane] = if pivot[lane] > tolerance * diagonal[lane] { inverse[lane] } else { R::ZERO };
+            diagonal[lane] = if pivot[lane] > rounding::<R>() * diagonal[lane] { inverse[lane] } else { R::ZERO };
         }
     }
 }
@@ -146,7 +137,7 @@ pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
 /// X := L^-1 X for eight systems side by side, of `N` right-hand sides each; rows before `first` are zero and stay so.
 #[inline(always)]
 pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first: usize, x: &mut [[Lanes<R>; N]]) {
-    let Ok(factors) = Triangle::new(factors, x.len()) else { return };
+    let factors = Triangle::new(factors, x.len());
     for (j, row) in factors.rows().enumerate().skip(first) {
         let Some((before, x_j)) = split_at(x, j) else { return };
         let mut sums = *x_j;
@@ -169,16 +160,14 @@ pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first:
 }
 
 /// Right-hand sides, one for each system.
-#[inline]
 pub(crate) fn one_each_mut<R>(x: &mut [Lanes<R>]) -> &mut [[Lanes<R>; 1]] {
     x.as_chunks_mut().0
 }
 
 /// X := A^-1 X for eight systems side by side.
-#[inline]
 pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
     forward_each::<R, 1>(factors, 0, one_each_mut(x));
-    let Ok(pivots) = Triangle::new(factors, x.len()) else { return };
+    let pivots = Triangle::new(factors, x.len());
     for (j, x_j) in x.iter_mut().enumerate() {
         *x_j = lanes::zip(x_j, &pivots.diagonal(j), |x_j, inverse| x_j * inverse);
     }
@@ -186,9 +175,8 @@ pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
 }
 
 /// X := L'^-1 X for eight systems side by side.
-#[inline]
 pub(crate) fn backward_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
-    let Ok(factors) = Triangle::new(factors, x.len()) else { return };
+    let factors = Triangle::new(factors, x.len());
     for j in (0..x.len()).rev() {
         let Some((before, &mut x_j)) = split_at(x, j) else { return };
         for (x, l) in before.iter_mut().zip(factors.left(j)) {

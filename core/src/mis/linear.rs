@@ -50,9 +50,10 @@ impl System {
         let mut cells = [0.0; packed_len(MAX_TECHNIQUES)];
         copy(&mut cells, a);
         each_product(&mut cells, first(&scale, n), |cell, product| *cell = product * (*cell / divisor));
-        let factor = match (solver, Triangle::new(&mut cells[..], n)) {
-            (Solver::Plain, Ok(m)) => spectral(&m),
-            (Solver::Ridge(ridge), Ok(mut m)) => {
+        let mut m = Triangle::new(&mut cells[..], n);
+        let factor = match solver {
+            Solver::Plain => spectral(&m),
+            Solver::Ridge(ridge) => {
                 let trace = (0..n).map(|j| m.diagonal(j)).sum::<f64>();
                 // Of it, about 1 belongs to what all densities have in common: the counts' weighted sum of the
                 // densities over S is 1 at every sample.
@@ -79,9 +80,7 @@ impl System {
         match &self.factor {
             Factor::Zero => return Vector::default(),
             Factor::Definite(cells) => {
-                if let Ok(factors) = Triangle::new(&cells[..], self.n) {
-                    Ldlt::factored(factors).solve(first_mut(&mut x, self.n));
-                }
+                Ldlt::factored(Triangle::new(&cells[..], self.n)).solve(first_mut(&mut x, self.n));
             }
             Factor::Spectral(vectors, inverse) => {
                 let b = core::mem::take(&mut x);

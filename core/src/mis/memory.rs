@@ -6,7 +6,6 @@
 
 use super::linear::MAX_TECHNIQUES;
 use crate::matrix::packed_len;
-use crate::rows::{Rows, rows, rows_mut};
 
 /// The f64 that [`OptimalMis`](super::OptimalMis) needs; 0 if `techniques` is not in 1..=16, `integrals` is 0, or no
 /// memory could hold them.
@@ -33,9 +32,9 @@ pub(super) struct Sums<N, S> {
     /// A = sum_s p p' / S^2, its lower triangle by rows.
     pub(super) matrix: S,
     /// Of each integral sum_s f / S, the sum of the progressive estimator's terms, and b = sum_s f p / S^2.
-    pub(super) records: Rows<S>,
+    pub(super) records: S,
     /// Of each integral the progressive estimator's alpha, which is no sum.
-    pub(super) alphas: Rows<S>,
+    pub(super) alphas: S,
 }
 
 impl<'a> Sums<f64, &'a [f64]> {
@@ -44,8 +43,7 @@ impl<'a> Sums<f64, &'a [f64]> {
         let (&samples, rest) = sums.split_first()?;
         let (ratio, rest) = rest.split_at_checked(techniques)?;
         let (matrix, records) = rest.split_at_checked(packed_len(techniques))?;
-        let records = rows(records, record_len(techniques));
-        Some(Sums { samples, ratio, matrix, records, alphas: rows(alphas, techniques) })
+        Some(Sums { samples, ratio, matrix, records, alphas })
     }
 }
 
@@ -55,11 +53,10 @@ impl<'a> Sums<&'a mut f64, &'a mut [f64]> {
         let (samples, rest) = sums.split_first_mut()?;
         let (ratio, rest) = rest.split_at_mut_checked(techniques)?;
         let (matrix, records) = rest.split_at_mut_checked(packed_len(techniques))?;
-        let records = rows_mut(records, record_len(techniques));
-        Some(Sums { samples, ratio, matrix, records, alphas: rows_mut(alphas, techniques) })
+        Some(Sums { samples, ratio, matrix, records, alphas })
     }
 }
 
-const fn record_len(techniques: usize) -> usize {
+pub(super) const fn record_len(techniques: usize) -> usize {
     2 + techniques
 }

@@ -13,12 +13,12 @@
 //! the balance estimate less what the samples got wrong about the densities' integrals, each of which is 1.
 
 use super::linear::{self, MAX_TECHNIQUES, System, Vector};
-use super::memory::{Sums, len, sums_len};
+use super::memory::{Sums, len, record_len, sums_len};
 use super::solver::Solver;
 use crate::error::{Error, check_part};
 use crate::matrix::copy;
 use crate::real::saturate;
-use crate::rows::{first, first_mut, rows_mut};
+use crate::rows::{first, first_mut, rows, rows_mut};
 
 /// Sums from which the integrals of several functions are estimated with optimal MIS weights.
 ///
@@ -87,7 +87,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         }
         let (sums, rounds) = self.sums()?;
         let system = self.system(solver)?;
-        for (out, record) in estimate.iter_mut().zip(sums.records) {
+        for (out, record) in estimate.iter_mut().zip(rows(sums.records, record_len(self.techniques))) {
             let [balance, progressive, moment @ ..] = record else { break };
             *out = saturate(match solver {
                 Solver::Progressive => progressive / rounds,
@@ -113,7 +113,8 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         }
         let (sums, _) = self.sums()?;
         let system = self.system(solver)?;
-        for (row, (record, current)) in rows_mut(alpha, self.techniques).zip(sums.records.zip(sums.alphas)) {
+        let records = rows(sums.records, record_len(self.techniques)).zip(rows(sums.alphas, self.techniques));
+        for (row, (record, current)) in rows_mut(alpha, self.techniques).zip(records) {
             let [_, _, moment @ ..] = record else { break };
             let solved = system.solve(moment);
             let alpha = if solver == Solver::Progressive { current } else { &solved };
@@ -184,7 +185,8 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         *sums.samples += 1.0;
         sums.ratio.iter_mut().zip(&ratio).for_each(|(sum, ratio)| *sum += ratio);
         linear::add_products(sums.matrix, first(&ratio, techniques), 1.0);
-        for (&value, (record, alpha)) in value.iter().zip(sums.records.zip(sums.alphas)) {
+        let records = rows_mut(sums.records, record_len(techniques)).zip(rows(sums.alphas, techniques));
+        for (&value, (record, alpha)) in value.iter().zip(records) {
             let [balance, progressive, moment @ ..] = record else { break };
             let value = f64::from(value) / sum;
             *balance += value;
@@ -208,8 +210,9 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
             return Err(Error::Unsupported);
         }
         let system = self.system(solver)?;
+        let techniques = self.techniques;
         let sums = self.sums_mut()?;
-        for (alpha, record) in sums.alphas.zip(sums.records) {
+        for (alpha, record) in rows_mut(sums.alphas, techniques).zip(rows(sums.records, record_len(techniques))) {
             let [_, _, moment @ ..] = record else { break };
             copy(alpha, &system.solve(moment));
         }

@@ -5,7 +5,7 @@
 //! this is safer than least squares, with no matrix at all.
 
 use super::super::config::{Config, Estimate, Optimizer};
-use super::super::design::{Design, square};
+use super::super::design::{self, Design, square};
 use super::super::per_channel::PerChannel;
 use super::super::plan::Plan;
 use super::super::result::{self, Outcome, Summary};
@@ -42,16 +42,23 @@ const FLOOR: [f64; 2] = [1e-6, 1e-2];
 
 /// A least-squares problem whose intercept was eliminated.
 pub(crate) trait Objective<R> {
+    fn about(&self) -> About<'_, R>;
     /// Half the negative gradient of the mean squared residual, P'(f - P b) / n; without a channel, P'P b / n.
     fn gradient(&self, channel: Option<usize>, b: &[R], out: &mut [R]);
-    /// The values' sums of squares.
-    fn squares(&self) -> PerChannel<R>;
     /// The sum of squared residuals, |f - P b|^2.
     fn residual_square(&self, channel: usize, b: &[R]) -> R;
     /// The sum of squares of a function.
     fn column_square(&self, column: usize) -> R;
-    fn count(&self) -> usize;
-    fn means(&self) -> &[R];
+}
+
+/// What an objective was made of.
+pub(crate) struct About<'a, R> {
+    /// The number of samples.
+    pub(crate) count: usize,
+    /// The functions' means.
+    pub(crate) means: &'a [R],
+    /// The values' sums of squares.
+    pub(crate) squares: PerChannel<R>,
 }
 
 /// As [`estimate`](crate::control_variate::estimate) by gradient descent, starting from `coefficients`, a row of
@@ -80,7 +87,7 @@ pub fn estimate_from<R: Real>(
     workspace: &mut [R],
 ) -> Result<Estimate, Error> {
     let mut basis = Basis::empty();
-    basis.set(config.basis, config.checked_shape()?)?;
+    basis.set(config.basis, config.checked_shape()?);
     let reader = Reader::new(config, samples)?;
     Plan::new(config, basis.columns(), reader.len())?;
     let columns = config.controls + basis.columns();
@@ -91,15 +98,17 @@ pub fn estimate_from<R: Real>(
         return Err(Error::NotFinite);
     }
     reader.check()?;
-    let mut arena = Arena::new(workspace);
-    let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena)?;
-    let solutions = arena.take(coefficients.len())?;
+    let loaded = design::size(reader.len(), columns, reader.channels());
+    let needed = loaded.and_then(|loaded| loaded.checked_add(size(columns, reader.channels())));
+    let mut arena = Arena::new(workspace, needed)?;
+    let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena).ok_or(Error::NoSamples)?;
+    let solutions = arena.take(coefficients.len());
     let unit = |index: usize| at(&design.units, index / columns.max(1));
     for (index, (out, &value)) in solutions.iter_mut().zip(&*coefficients).enumerate() {
         *out = unit(index).stored_length(value);
     }
     let plain = result::plain_variance(&design);
-    let outcome = descend(&design, config, &basis, solutions, plain, &mut arena)?;
+    let outcome = descend(&design, config, &basis, solutions, plain, &mut arena);
     for (index, (out, &value)) in coefficients.iter_mut().zip(&*solutions).enumerate() {
         *out = result::saturate(unit(index).length(value));
     }
@@ -117,11 +126,12 @@ pub(crate) fn descend<R: Real>(
     coefficients: &mut [R],
     plain: Option<PerChannel<R>>,
     arena: &mut Arena<'_, R>,
-) -> Result<Outcome<R>, Error> {
-    let columns = objective.means().len();
-    let (gradient, first, second) = (arena.take(columns)?, arena.take(columns)?, arena.take(columns)?);
-    let (scales, units) = (arena.take(columns)?, arena.take(columns)?);
-    let n = R::from_usize(objective.count());
+) -> Outcome<R> {
+    let about = objective.about();
+    let columns = about.means.len();
+    let (gradient, first, second) = (arena.take(columns), arena.take(columns), arena.take(columns));
+    let (scales, units) = (arena.take(columns), arena.take(columns));
+    let n = R::from_usize(about.count);
     // One for the basis, and one over a control function's size, whose unit is its maker's; zero for one that does not
     // move.
     units.fill(R::ONE);
@@ -135,15 +145,14 @@ pub(crate) fn descend<R: Real>(
         Optimizer::Adam => R::ONE,
         Optimizer::Momentum | Optimizer::Plain => largest_curvature(objective, scales, first, gradient, second),
     };
-    let variance_factor = variance_factor(objective, units);
+    let variance_factor = variance_factor(&about, units);
     let mut outcome = Outcome { correction: PerChannel::default(), variance: plain };
-    let squares = objective.squares();
     let steps = match config.iterations {
-        0 => (objective.count() / 2).clamp(ITERATIONS.0, ITERATIONS.1),
+        0 => (about.count / 2).clamp(ITERATIONS.0, ITERATIONS.1),
         steps => steps,
     };
     for (channel, solution) in rows_mut(coefficients, columns).enumerate() {
-        let square = squares[channel];
+        let square = about.squares[channel];
         let descent = Descent::new(config, (square / n).sqrt(), curvature);
         first.fill(R::ZERO);
         second.fill(R::ZERO);
@@ -160,8 +169,7 @@ pub(crate) fn descend<R: Real>(
         }
         objective.gradient(Some(channel), solution, gradient);
         let (mut correction, mut rest) = (R::ZERO, R::ZERO);
-        for (((&b, &g), &mean), &unit) in solution.iter().zip(gradient.iter()).zip(objective.means()).zip(units.iter())
-        {
+        for (((&b, &g), &mean), &unit) in solution.iter().zip(gradient.iter()).zip(about.means).zip(units.iter()) {
             correction -= b * mean;
             // The curvature of orthonormal functions is one: the gradient is what the coefficients lack.
             rest += (g * unit) * (unit * mean);
@@ -173,7 +181,7 @@ pub(crate) fn descend<R: Real>(
             variance[channel] = own + rest * rest;
         }
     }
-    Ok(outcome)
+    outcome
 }
 
 /// What a sum of squared residuals of a descent is multiplied by to be a variance; None if no residual is left over to
@@ -183,12 +191,12 @@ pub(crate) fn descend<R: Real>(
 /// degrees of freedom one power less. What uncertain coefficients add is taken as 2 k times what k columns of a
 /// finished fit would: a descent that stops early is wrong in all of them in the same way. It overstates the error of
 /// one that nearly finished, up to 1.8 times on the test integrands.
-fn variance_factor<R: Real>(objective: &impl Objective<R>, units: &[R]) -> Option<R> {
-    let freedom = objective.count().checked_sub(objective.means().len() + 1).filter(|&freedom| freedom > 0)?;
-    let (n, freedom) = (R::from_usize(objective.count()), R::from_usize(freedom));
-    let means = objective.means().iter().zip(units).map(|(&mean, &unit)| mean * unit);
+fn variance_factor<R: Real>(about: &About<'_, R>, units: &[R]) -> Option<R> {
+    let freedom = about.count.checked_sub(about.means.len() + 1).filter(|&freedom| freedom > 0)?;
+    let (n, freedom) = (R::from_usize(about.count), R::from_usize(freedom));
+    let means = about.means.iter().zip(units).map(|(&mean, &unit)| mean * unit);
     let square = means.fold(R::ZERO, |sum, mean| sum + mean * mean);
-    let uncertain = R::ONE + R::from_usize(2 * objective.means().len()) * square;
+    let uncertain = R::ONE + R::from_usize(2 * about.means.len()) * square;
     let all = n - R::ONE;
     Some(uncertain * all * all / (n * freedom * freedom * freedom))
 }
@@ -221,7 +229,6 @@ impl<R: Real> Descent<R> {
 
     /// One step along the negative gradient, of lengths `scales` for gradients in `units`; `bias` holds the powers of
     /// Adam's decays so far.
-    #[inline]
     fn step(
         &self,
         solution: &mut [R],
@@ -256,7 +263,10 @@ impl<R: Real> Descent<R> {
 }
 
 impl<R: Real> Objective<R> for Design<'_, R> {
-    #[inline]
+    fn about(&self) -> About<'_, R> {
+        About { count: self.n, means: self.column_means, squares: self.squares() }
+    }
+
     fn gradient(&self, channel: Option<usize>, b: &[R], out: &mut [R]) {
         let inverse = R::ONE / R::from_usize(self.n);
         out.fill(R::ZERO);
@@ -274,10 +284,6 @@ impl<R: Real> Objective<R> for Design<'_, R> {
         }
     }
 
-    fn squares(&self) -> PerChannel<R> {
-        Design::squares(self)
-    }
-
     fn residual_square(&self, channel: usize, b: &[R]) -> R {
         let mut total = [R::ZERO; LANES];
         for (panel, values) in self.each_panel() {
@@ -292,14 +298,6 @@ impl<R: Real> Objective<R> for Design<'_, R> {
 
     fn column_square(&self, column: usize) -> R {
         square(&self.panels, column)
-    }
-
-    fn count(&self) -> usize {
-        self.n
-    }
-
-    fn means(&self) -> &[R] {
-        self.column_means
     }
 }
 

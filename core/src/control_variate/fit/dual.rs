@@ -1,13 +1,12 @@
 //! The samples' n x n system, for fewer samples than functions.
 
 use super::super::design::Design;
-use super::{Fit, Penalty, SMALLEST_GAP};
+use super::{Fit, Penalty};
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt::Ldlt;
 use crate::matrix::{Panel, Triangle, at, copy};
-use crate::real::Real;
+use crate::real::{Real, rounding};
 
 /// The matrix K = P D^-1 P' over all columns, for relative penalties D, and g = P D^-1 m.
 pub(crate) struct Dual<'a, R> {
@@ -23,11 +22,10 @@ pub(crate) fn len(n: usize, channels: usize) -> Option<usize> {
 }
 
 impl<'a, R: Real> Dual<'a, R> {
-    #[inline]
-    pub(crate) fn new(design: &Design<'_, R>, penalties: &[R], arena: &mut Arena<'a, R>) -> Result<Self, Error> {
+    pub(crate) fn new(design: &Design<'_, R>, penalties: &[R], arena: &mut Arena<'a, R>) -> Self {
         let padded = design.n.next_multiple_of(LANES);
-        let mut kernel = arena.triangle(padded)?;
-        let shift = arena.zeros(padded)?;
+        let mut kernel = arena.triangle(padded);
+        let shift = arena.zeros(padded);
         for (a, ((left, _), shift)) in design.each_panel().zip(shift.chunks_exact_mut(LANES)).enumerate() {
             for (b, (right, _)) in design.each_panel().enumerate().take(a + 1) {
                 let mut tile = [[R::ZERO; LANES]; LANES];
@@ -50,13 +48,12 @@ impl<'a, R: Real> Dual<'a, R> {
                 }
             }
         }
-        Ok(Self { kernel, shift })
+        Self { kernel, shift }
     }
 
     /// The fit with ridge strength s over all columns. With B = K + s n I,
     ///
     /// b = D^-1 P' B^-1 f,   h_i - 1/n = 1 - s n (B^-1)_ii,   m'A^-1 p_i = (B^-1 g)_i.
-    #[inline]
     pub(crate) fn fit(
         &self,
         design: &Design<'_, R>,
@@ -64,15 +61,15 @@ impl<'a, R: Real> Dual<'a, R> {
         leave_one_out: bool,
         coefficients: Option<&mut [R]>,
         mut arena: Arena<'_, R>,
-    ) -> Result<Fit<R>, Error> {
+    ) -> Fit<R> {
         let n = design.n;
         let count = R::from_usize(n);
         let inverse_n = R::ONE / count;
         let strength = penalty.strength * count;
-        let mut matrix = arena.triangle(n)?;
-        let inverse = arena.triangle(n)?;
-        let (diagonal, shift) = (arena.take(n)?, arena.take(n)?);
-        let mut alpha = Panel::new(arena.take(n * design.channels)?, n);
+        let mut matrix = arena.triangle(n);
+        let inverse = arena.triangle(n);
+        let (diagonal, shift) = (arena.take(n), arena.take(n));
+        let mut alpha = Panel::new(arena.take(n * design.channels), n);
         copy(matrix.entries_mut(), self.kernel.entries());
         // K annihilates 1, so B^-1 holds 11'/(s n) beside which all else is small for a small strength s. With
         // c 11'/n added to B, c = tr K / n, that part is 11'/((s + c) n), and f and g, orthogonal to 1, see no change.
@@ -93,7 +90,6 @@ impl<'a, R: Real> Dual<'a, R> {
         if leave_one_out {
             factor.inverse_diagonal(inverse, diagonal);
         }
-        let smallest_gap = R::from_f64(SMALLEST_GAP) * R::EPSILON;
         let mut fit = Fit::default();
         for &value in shift.iter() {
             fit.eccentricity += value * value;
@@ -114,7 +110,7 @@ impl<'a, R: Real> Dual<'a, R> {
             for (((&alpha, &g), &shift), &diagonal) in samples {
                 in_sample -= g * alpha;
                 let complement = strength * diagonal;
-                let gap = (complement - left * inverse_n).max(smallest_gap);
+                let gap = (complement - left * inverse_n).max(rounding());
                 let residual = strength * alpha / gap;
                 let influence = residual * (R::ONE - count * shift);
                 press += residual * residual;
@@ -138,6 +134,6 @@ impl<'a, R: Real> Dual<'a, R> {
                 }
             }
         }
-        Ok(fit)
+        fit
     }
 }

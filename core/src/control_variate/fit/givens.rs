@@ -7,17 +7,13 @@ use super::super::ridge;
 use super::super::sums::{Layout, Sums, not_below_zero};
 use crate::arena::Arena;
 use crate::basis::Basis;
-use crate::error::Error;
 use crate::linalg::givens;
 use crate::matrix::{at, copy, first_mut, from_mut};
-use crate::real::Real;
+use crate::real::{Real, rounding};
 
 /// Strength of the penalty that makes the solution unique: its square root, which is what rows see, is the type's
 /// rounding noise. For `f64` and for narrower types.
 const FLOOR: [f64; 2] = [1e-24, 1e-12];
-
-/// An entry below this fraction of its column, in units of the type's epsilon, is rounding noise.
-const NOISE: f64 = 64.0;
 
 /// Numbers that [`least_squares`] takes from its arena.
 pub(crate) fn size(layout: Layout) -> usize {
@@ -31,10 +27,10 @@ pub(crate) fn least_squares<R: Real>(
     config: &Config,
     basis: &Basis,
     arena: &mut Arena<'_, R>,
-) -> Result<Outcome<R>, Error> {
+) -> Outcome<R> {
     let (layout, terms) = (sums.layout(), sums.gram.order());
-    let mut system = layout.group_mut(arena.zeros(layout.len())?, 0)?;
-    let (x, solution, penalties) = (arena.take(terms)?, arena.take(terms)?, arena.zeros(terms)?);
+    let mut system = layout.group_mut(arena.zeros(layout.len()), 0);
+    let (x, solution, penalties) = (arena.take(terms), arena.take(terms), arena.zeros(terms));
     copy(system.gram.entries_mut(), sums.gram.entries());
     for (out, rhs) in system.rhs.rows_mut().zip(sums.rhs.rows()) {
         copy(out, rhs);
@@ -52,7 +48,7 @@ pub(crate) fn least_squares<R: Real>(
         for (out, &z) in solution.iter_mut().zip(system.rhs.column(channel)) {
             *out = z;
         }
-        givens::solve(&system.gram.view(), solution);
+        givens::solve(&system.gram, solution);
         // The functions' integrals are zero.
         correction[channel] = at(solution, 0);
         // What no fit explains, and what this one leaves of the rest because of its penalty.
@@ -67,9 +63,9 @@ pub(crate) fn least_squares<R: Real>(
     }
     // The constant is the first column, and has a share of 1 in its own variance.
     unit(x, 0, R::ONE);
-    let eccentricity = not_below_zero(count * givens::inverse_square(&system.gram.view(), x) - R::ONE);
+    let eccentricity = not_below_zero(count * givens::inverse_square(&system.gram, x) - R::ONE);
     let variance = result::residual_variance(residuals, layout.columns, count, eccentricity);
-    Ok(Outcome { correction, variance })
+    Outcome { correction, variance }
 }
 
 /// x := `value` e_j
@@ -85,7 +81,7 @@ fn unit<R: Real>(x: &mut [R], j: usize, value: R) {
 /// Where columns depend on each other, a row of the factor is rounding noise with a right-hand side that is not: the
 /// quotient would be anything. What is noise in a column of the squared length given is therefore zero.
 fn add_penalty<R: Real>(system: &mut Sums<&mut [R]>, penalties: &[R], strength: R, squares: &[R], x: &mut [R]) {
-    let noise = R::from_f64(NOISE) * R::EPSILON;
+    let noise = rounding::<R>();
     let channels = system.channels();
     for (j, &penalty) in penalties.iter().enumerate() {
         for (k, &square) in squares.iter().enumerate().skip(j) {

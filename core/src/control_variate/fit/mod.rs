@@ -16,9 +16,6 @@ pub(crate) mod normal;
 
 use super::per_channel::PerChannel;
 
-/// The smallest 1 - h that a division is trusted with, in units of the type's epsilon.
-const SMALLEST_GAP: f64 = 64.0;
-
 /// What one ridge fit says, in the design's units.
 ///
 /// With the intercept free, columns centred (P), values centred (f), A = P'P + L and b = A^-1 P'f, the residual of

@@ -6,19 +6,14 @@ use super::super::per_channel::PerChannel;
 use super::super::result::{self, Outcome};
 use super::super::sums::{Layout, Sums, not_below_zero, residual_square, spread};
 use super::super::trust::Centre;
-use super::descent::Objective;
-use super::{Fit, Penalty, SMALLEST_GAP};
+use super::descent::{About, Objective};
+use super::{Fit, Penalty};
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::ldlt::Ldlt;
 use crate::matrix::{Panel, Triangle, copy, packed_len, row_at};
-use crate::real::Real;
+use crate::real::{Real, rounding};
 use crate::rows::rows;
-
-/// A column whose sum of squares about its mean is below this fraction of that about zero, in units of the type's
-/// epsilon, is constant.
-const NOISE: f64 = 64.0;
 
 /// A ridge problem whose intercept is free and eliminated.
 pub(crate) struct Normal<'a, R> {
@@ -41,17 +36,17 @@ impl<'a, R: Real> Normal<'a, R> {
     /// Of the samples of a design.
     // Without, estimates of one pixel take 9 to 14 % more instructions.
     #[inline(always)]
-    pub(crate) fn of(design: &Design<'a, R>, arena: &mut Arena<'a, R>) -> Result<Self, Error> {
-        let mut gram = arena.triangle(design.columns)?;
-        let mut rhs = Panel::new(arena.take(design.columns * design.channels)?, design.columns);
+    pub(crate) fn of(design: &Design<'a, R>, arena: &mut Arena<'a, R>) -> Self {
+        let mut gram = arena.triangle(design.columns);
+        let mut rhs = Panel::new(arena.take(design.columns * design.channels), design.columns);
         design.normal_equations(&mut gram, &mut rhs);
-        Ok(Self { count: R::from_usize(design.n), gram, rhs, means: design.column_means })
+        Self { count: R::from_usize(design.n), gram, rhs, means: design.column_means }
     }
 
     /// P'P + L, factored.
     #[inline(always)]
-    fn factor<'f>(&self, penalty: Penalty<'_, R>, arena: &mut Arena<'f, R>) -> Result<Ldlt<&'f mut [R]>, Error> {
-        let mut matrix = arena.triangle(self.gram.order())?;
+    fn factor<'f>(&self, penalty: Penalty<'_, R>, arena: &mut Arena<'f, R>) -> Ldlt<&'f mut [R]> {
+        let mut matrix = arena.triangle(self.gram.order());
         copy(matrix.entries_mut(), self.gram.entries());
         let strength = penalty.strength * self.count;
         for (j, &relative) in penalty.relative.iter().enumerate() {
@@ -59,7 +54,7 @@ impl<'a, R: Real> Normal<'a, R> {
                 *diagonal += strength * relative;
             }
         }
-        Ok(Ldlt::new(matrix))
+        Ldlt::new(matrix)
     }
 
     #[inline(always)]
@@ -70,12 +65,12 @@ impl<'a, R: Real> Normal<'a, R> {
         leave_one_out: bool,
         coefficients: Option<&mut [R]>,
         mut arena: Arena<'_, R>,
-    ) -> Result<Fit<R>, Error> {
+    ) -> Fit<R> {
         let columns = self.gram.order();
-        let factor = self.factor(penalty, &mut arena)?;
-        let means = arena.take(columns)?;
-        let mut solution = Panel::new(arena.take(columns * design.channels)?, columns);
-        let z = arena.take_lanes(columns)?;
+        let factor = self.factor(penalty, &mut arena);
+        let means = arena.take(columns);
+        let mut solution = Panel::new(arena.take(columns * design.channels), columns);
+        let z = arena.take_lanes(columns);
         // Everything below lives in the coordinates z = L^-1 p, where A^-1 is diagonal.
         copy(means, self.means);
         factor.forward(means);
@@ -97,31 +92,30 @@ impl<'a, R: Real> Normal<'a, R> {
                 factor.backward(out);
             }
         }
-        Ok(fit)
+        fit
     }
 
     /// Writes the coefficients of a fit, a row for each channel, and returns the factored matrix.
-    #[inline]
     pub(crate) fn solve<'f>(
         &self,
         penalty: Penalty<'_, R>,
         coefficients: &mut [R],
         arena: &mut Arena<'f, R>,
-    ) -> Result<Ldlt<&'f mut [R]>, Error> {
-        let factor = self.factor(penalty, arena)?;
+    ) -> Ldlt<&'f mut [R]> {
+        let factor = self.factor(penalty, arena);
         for (out, rhs) in Panel::new(coefficients, self.gram.order()).rows_mut().zip(self.rhs.rows()) {
             copy(out, rhs);
             factor.solve(out);
         }
-        Ok(factor)
+        factor
     }
 
     /// n sum_i (m'A^-1 p_i)^2 = n x'P'P x for x = A^-1 m.
-    pub(crate) fn eccentricity(&self, factor: &Ldlt<&mut [R]>, arena: &mut Arena<'_, R>) -> Result<R, Error> {
-        let x = arena.take(self.gram.order())?;
+    pub(crate) fn eccentricity(&self, factor: &Ldlt<&mut [R]>, arena: &mut Arena<'_, R>) -> R {
+        let x = arena.take(self.gram.order());
         copy(x, self.means);
         factor.solve(x);
-        Ok(not_below_zero(self.gram.quadratic(x)) * self.count)
+        not_below_zero(self.gram.quadratic(x)) * self.count
     }
 
     /// Where the samples of a fit lie.
@@ -130,9 +124,9 @@ impl<'a, R: Real> Normal<'a, R> {
         factor: &Ldlt<&mut [R]>,
         penalty: Penalty<'_, R>,
         mut arena: Arena<'_, R>,
-    ) -> Result<Centre<R>, Error> {
+    ) -> Centre<R> {
         let columns = self.gram.order();
-        let (inverse, diagonal) = (arena.triangle(columns)?, arena.take(columns)?);
+        let (inverse, diagonal) = (arena.triangle(columns), arena.take(columns));
         factor.inverse_diagonal(inverse, diagonal);
         // tr(A^-1 P'P) = columns - tr(A^-1 L).
         let strength = penalty.strength * self.count;
@@ -140,8 +134,8 @@ impl<'a, R: Real> Normal<'a, R> {
         for (&value, &relative) in diagonal.iter().zip(penalty.relative) {
             freedom -= strength * value * relative;
         }
-        let eccentricity = self.eccentricity(factor, &mut arena)?;
-        Ok(Centre::new(eccentricity, freedom, self.count))
+        let eccentricity = self.eccentricity(factor, &mut arena);
+        Centre::new(eccentricity, freedom, self.count)
     }
 }
 
@@ -157,7 +151,6 @@ fn residuals<R: Real>(
 ) {
     let n = R::from_usize(design.n);
     let inverse_n = R::ONE / n;
-    let smallest_gap = R::from_f64(SMALLEST_GAP) * R::EPSILON;
     let zero = [R::ZERO; LANES];
     let [mut press, mut influences, mut corrections] = [[zero; Config::MAX_CHANNELS]; 3];
     let (mut freedom, mut eccentricity) = (zero, zero);
@@ -179,7 +172,7 @@ fn residuals<R: Real>(
         eccentricity = lanes::plus_product(eccentricity, shift, shift);
         let (mut gap, mut weight) = (zero, zero);
         for l in 0..LANES {
-            gap[l] = R::ONE / (R::ONE - inverse_n - leverage[l]).max(smallest_gap);
+            gap[l] = R::ONE / (R::ONE - inverse_n - leverage[l]).max(rounding());
             weight[l] = R::ONE - n * shift[l];
         }
         let sums = press.iter_mut().zip(&mut influences).zip(&mut corrections);
@@ -224,32 +217,31 @@ pub(crate) fn len(Layout { columns, channels, .. }: Layout) -> usize {
 }
 
 /// Algorithm 1 from sums: what a fit to all samples adds to the mean.
-#[inline]
 pub(crate) fn least_squares<R: Real>(
     sums: &Sums<&[R]>,
     penalty: Penalty<'_, R>,
     arena: &mut Arena<'_, R>,
-) -> Result<Outcome<R>, Error> {
+) -> Outcome<R> {
     let Layout { columns, channels, .. } = sums.layout();
-    let coefficients = arena.take(columns * channels)?;
-    let centred = Centred::new(sums, arena)?;
-    let factor = centred.normal.solve(penalty, coefficients, arena)?;
-    let eccentricity = centred.normal.eccentricity(&factor, arena)?;
+    let coefficients = arena.take(columns * channels);
+    let centred = Centred::new(sums, arena);
+    let factor = centred.normal.solve(penalty, coefficients, arena);
+    let eccentricity = centred.normal.eccentricity(&factor, arena);
     // Its residuals have mean zero: its intercept is the estimate.
     let correction = centred.intercepts(coefficients) - centred.value_means;
     let b = |channel| row_at(coefficients, columns, channel);
     let residual = PerChannel::of(channels, |channel| centred.residual_square(channel, b(channel)));
     let variance = result::residual_variance(residual, columns, centred.normal.count, eccentricity);
-    Ok(Outcome { correction, variance })
+    Outcome { correction, variance }
 }
 
 impl<'a, R: Real> Centred<'a, R> {
     /// Centres a group of sums that holds samples.
-    pub(crate) fn new(sums: &Sums<&[R]>, arena: &mut Arena<'a, R>) -> Result<Self, Error> {
+    pub(crate) fn new(sums: &Sums<&[R]>, arena: &mut Arena<'a, R>) -> Self {
         let Layout { columns, channels, .. } = sums.layout();
-        let mut gram = arena.triangle(columns)?;
-        let mut rhs = Panel::new(arena.take(columns * channels)?, columns);
-        let means = arena.take(columns)?;
+        let mut gram = arena.triangle(columns);
+        let mut rhs = Panel::new(arena.take(columns * channels), columns);
+        let means = arena.take(columns);
         let count = sums.count();
         let inverse = R::ONE / count;
         for (j, mean) in means.iter_mut().enumerate() {
@@ -270,7 +262,7 @@ impl<'a, R: Real> Centred<'a, R> {
             }
         }
         for j in 0..columns {
-            if gram.diagonal(j) > R::from_f64(NOISE) * R::EPSILON * sums.column_square(j) {
+            if gram.diagonal(j) > rounding::<R>() * sums.column_square(j) {
                 continue;
             }
             // What is left of a column that hardly moves is rounding noise, and says nothing about the values.
@@ -284,7 +276,7 @@ impl<'a, R: Real> Centred<'a, R> {
                 *value = R::ZERO;
             }
         }
-        Ok(Self { normal: Normal { count, gram, rhs, means }, value_means, squares })
+        Self { normal: Normal { count, gram, rhs, means }, value_means, squares }
     }
 
     /// The intercepts that go with coefficients, a row for each channel.
@@ -298,6 +290,11 @@ impl<'a, R: Real> Centred<'a, R> {
 }
 
 impl<R: Real> Objective<R> for Centred<'_, R> {
+    fn about(&self) -> About<'_, R> {
+        let Normal { count, means, .. } = self.normal;
+        About { count: count.to_f64() as usize, means, squares: self.squares }
+    }
+
     /// (c - G b) / n; without a channel, G b / n.
     fn gradient(&self, channel: Option<usize>, b: &[R], gradient: &mut [R]) {
         let Normal { count, gram, rhs, .. } = &self.normal;
@@ -322,23 +319,11 @@ impl<R: Real> Objective<R> for Centred<'_, R> {
         }
     }
 
-    fn squares(&self) -> PerChannel<R> {
-        self.squares
-    }
-
     fn residual_square(&self, channel: usize, b: &[R]) -> R {
         residual_square(self.squares[channel], &self.normal.gram, self.normal.rhs.row(channel).iter(), b)
     }
 
     fn column_square(&self, column: usize) -> R {
         self.normal.gram.diagonal(column)
-    }
-
-    fn count(&self) -> usize {
-        self.normal.count.to_f64() as usize
-    }
-
-    fn means(&self) -> &[R] {
-        self.normal.means
     }
 }

@@ -14,7 +14,6 @@ use super::products::{
 use super::sliced::Sliced;
 use super::terms::{MAX_AXES, Terms};
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::matrix::{at, copy, first_mut, from, from_mut, halves_mut, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
@@ -128,38 +127,33 @@ fn power_of_two(exponent: i32) -> f32 {
 
 impl<'a> Batch<'a> {
     /// Room for groups of which none is larger than the first.
-    pub(super) fn new(
-        call: &'a Call<'a>,
-        terms: Terms,
-        lanes: [Group; LANES],
-        arena: &mut Arena<'a, f32>,
-    ) -> Result<Self, Error> {
+    pub(super) fn new(call: &'a Call<'a>, terms: Terms, lanes: [Group; LANES], arena: &mut Arena<'a, f32>) -> Self {
         let [Group { len, .. }, ..] = lanes;
         let slots = if call.is_joined() { len.div_ceil(LANES) } else { len };
         let (columns, channels, values) = (terms.columns(), call.config.channels, call.values());
         let (blocks, [between, within]) = (blocks(call, slots), parts(call));
         let known = if call.image.has_known() { blocks * channels } else { 0 };
-        Ok(Self {
+        Self {
             call,
             lanes,
             is_joined: call.is_joined(),
             has_colours: call.has_colours(),
             units: [Units { powers: NONE, scales: NONE, offsets: NONE, limits: NONE }; Config::MAX_CHANNELS],
             leaves_out: false,
-            numbers: arena.take_fours(blocks)?,
-            places: arena.take_fours(blocks * terms.fixed())?,
-            inside: arena.take_fours(blocks)?,
-            ranges: arena.take_fours(blocks * 2 * channels)?,
-            coefficients: arena.take_fours(known)?,
-            integrals: arena.take_fours(known)?,
-            slices: arena.take_fours(if terms.slices > 0 { blocks } else { 0 })?,
+            numbers: arena.take_fours(blocks),
+            places: arena.take_fours(blocks * terms.fixed()),
+            inside: arena.take_fours(blocks),
+            ranges: arena.take_fours(blocks * 2 * channels),
+            coefficients: arena.take_fours(known),
+            integrals: arena.take_fours(known),
+            slices: arena.take_fours(if terms.slices > 0 { blocks } else { 0 }),
             values,
-            means: arena.take_fours(blocks * values)?,
-            functions: arena.take_fours(blocks * terms.functions)?,
-            between: Sums::new(between * terms.slices.max(1), columns, values, arena)?,
-            within: Sums::new(within, if terms.slices > 0 { 0 } else { columns }, values, arena)?,
+            means: arena.take_fours(blocks * values),
+            functions: arena.take_fours(blocks * terms.functions),
+            between: Sums::new(between * terms.slices.max(1), columns, values, arena),
+            within: Sums::new(within, if terms.slices > 0 { 0 } else { columns }, values, arena),
             terms,
-        })
+        }
     }
 
     /// The blocks that have pixels of some colours.
@@ -331,14 +325,14 @@ impl<'a> Batch<'a> {
 
     /// Reads all samples and sums their products.
     #[inline(always)]
-    pub(super) fn load(&mut self, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+    pub(super) fn load(&mut self, arena: &mut Arena<'_, f32>) {
         let (call, values, slices) = (self.call, self.values, self.terms.slices);
         let (columns, functions, fixed) = (self.terms.columns(), self.terms.functions, self.terms.fixed());
         let mut arena = arena.scratch();
-        let mut samples = Rows::new(functions, values, &mut arena)?;
-        let mut pixels = Rows::new(columns, values, &mut arena)?;
-        let mut apart = Apart::new(self.terms.centred(), values, &mut arena)?;
-        let mut sliced = Sliced::new(slices, columns, values, &mut arena)?;
+        let mut samples = Rows::new(functions, values, &mut arena);
+        let mut pixels = Rows::new(columns, values, &mut arena);
+        let mut apart = Apart::new(self.terms.centred(), values, &mut arena);
+        let mut sliced = Sliced::new(slices, columns, values, &mut arena);
         self.set_units();
         self.between.empty();
         self.within.empty();
@@ -379,7 +373,6 @@ impl<'a> Batch<'a> {
             self.between.join();
             self.within.join();
         }
-        Ok(())
     }
 
     /// Reads the samples of one slot: their means, and the products of how far they are from those.
@@ -501,15 +494,15 @@ struct Apart<'a> {
 }
 
 impl<'a> Apart<'a> {
-    fn new(functions: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        Ok(Self {
-            sums: Sums::new(1, functions, values, arena)?,
-            totals: arena.take_lanes(functions + values)?,
-            firsts: arena.take_lanes(values)?,
-            functions: arena.take_fours(functions * functions)?,
-            values: arena.take_fours(values * functions)?,
-            squares: arena.take_fours(values)?,
-        })
+    fn new(functions: usize, values: usize, arena: &mut Arena<'a, f32>) -> Self {
+        Self {
+            sums: Sums::new(1, functions, values, arena),
+            totals: arena.take_lanes(functions + values),
+            firsts: arena.take_lanes(values),
+            functions: arena.take_fours(functions * functions),
+            values: arena.take_fours(values * functions),
+            squares: arena.take_fours(values),
+        }
     }
 
     /// Sets those of one pixel: the sums of products less those of means.

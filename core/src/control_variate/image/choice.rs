@@ -10,7 +10,6 @@ use super::products::{
 };
 use super::terms::Terms;
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
 use crate::matrix::{at, packed_len, row, row_at, row_at_mut, row_mut};
@@ -100,12 +99,12 @@ pub(super) struct Shares<'a> {
 
 impl<'a> Shares<'a> {
     /// All trust in the last choice.
-    pub(super) fn last(choices: Choices, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        let all = arena.take_lanes(CHOSEN * choices.channels * choices.count)?;
+    pub(super) fn last(choices: Choices, arena: &mut Arena<'a, f32>) -> Self {
+        let all = arena.take_lanes(CHOSEN * choices.channels * choices.count);
         for shares in rows_mut(all, choices.count) {
             shares.iter_mut().rev().enumerate().for_each(|(k, share)| *share = [if k == 0 { 1.0 } else { 0.0 }; LANES]);
         }
-        Ok(Self { all, choices })
+        Self { all, choices }
     }
 
     /// How a channel's correction is shared out.
@@ -147,15 +146,15 @@ impl<'a> Spreads<'a> {
         fits: &Fits<'_>,
         taken: Colours,
         arena: &mut Arena<'a, f32>,
-    ) -> Result<Self, Error> {
+    ) -> Self {
         let fixed = batch.terms.fixed();
         let all = choices.channels * choices.count;
-        let [across, within] = [arena.take_fours(all)?, arena.take_fours(all)?];
-        let [squares, trends] = [arena.take_lanes(all)?, arena.take_lanes(all * fixed)?];
+        let [across, within] = [arena.take_fours(all), arena.take_fours(all)];
+        let [squares, trends] = [arena.take_lanes(all), arena.take_lanes(all * fixed)];
         let sums = [&mut *squares, trends, across.as_flattened_mut(), within.as_flattened_mut()];
         sums.into_iter().flatten().for_each(|sum| *sum = NONE);
         let mut factor = [NONE; packed_len(MAX_FIXED)];
-        let estimates = arena.take_fours(choices.count)?;
+        let estimates = arena.take_fours(choices.count);
         for block in batch.blocks(taken) {
             let places = row_at(batch.places, fixed, block);
             let Some(inside) = batch.inside.get(block) else { continue };
@@ -227,7 +226,7 @@ impl<'a> Spreads<'a> {
                 }
             }
         }
-        Ok(Self { across, within, freedom, pixels, has_several: batch.call.n > 1, choices })
+        Self { across, within, freedom, pixels, has_several: batch.call.n > 1, choices }
     }
 
     /// The sums of a choice, across pixels and within them: for 0 as all pixels count them, else as a colour does. What

@@ -18,7 +18,6 @@ use super::terms::Terms;
 use crate::arena::Arena;
 use crate::basis::MAX_DIMS;
 use crate::control_variate::Config;
-use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::ldlt;
 use crate::matrix::{at, copy, first_mut, from, from_mut, packed_len, row, row_at, row_at_mut, row_mut};
@@ -161,19 +160,19 @@ fn logistic(q: &Eight) -> Eight {
 }
 
 impl<'a> Edges<'a> {
-    pub(super) fn new(batch: &Batch<'_>, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+    pub(super) fn new(batch: &Batch<'_>, arena: &mut Arena<'a, f32>) -> Self {
         let (n, channels, fixed) = (batch.call.n, batch.call.config.channels, batch.terms.fixed());
         let (columns, columns_of_a) = (fixed + FUNCTIONS, fixed + SLOPES);
-        Ok(Self {
-            samples: arena.take_fours(batch.inside.len() * n * (3 + channels))?,
-            all: Sums::new(COLOURS, columns, 1, arena)?,
-            lit: Sums::new(COLOURS, columns_of_a, channels, arena)?,
-            training: Sums::new(1, columns, 1, arena)?,
-            training_lit: Sums::new(1, columns_of_a, channels, arena)?,
+        Self {
+            samples: arena.take_fours(batch.inside.len() * n * (3 + channels)),
+            all: Sums::new(COLOURS, columns, 1, arena),
+            lit: Sums::new(COLOURS, columns_of_a, channels, arena),
+            training: Sums::new(1, columns, 1, arena),
+            training_lit: Sums::new(1, columns_of_a, channels, arena),
             most: [[NONE; Config::MAX_CHANNELS]; COLOURS],
-            shares: arena.take_lanes(POINTS * POINTS)?,
-            points: arena.take_lanes(POINTS * POINTS)?,
-        })
+            shares: arena.take_lanes(POINTS * POINTS),
+            points: arena.take_lanes(POINTS * POINTS),
+        }
     }
 
     /// Reads the samples and sums their products.

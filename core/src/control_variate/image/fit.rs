@@ -9,7 +9,6 @@ use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, 
 use super::slices::Apart;
 use super::terms::{MAX_FITS, SINGULAR, Terms, scale};
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
 use crate::matrix::{at, copy, diagonal, first_mut, from, packed_len, row, row_at, row_at_mut, row_mut};
@@ -60,25 +59,25 @@ pub(super) fn fits_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Opti
 }
 
 impl<'a> Fits<'a> {
-    pub(super) fn new(batch: &Batch<'_>, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+    pub(super) fn new(batch: &Batch<'_>, arena: &mut Arena<'a, f32>) -> Self {
         let (call, terms) = (batch.call, &batch.terms);
         let (columns, values, count) = (terms.columns(), batch.values, terms.candidates());
         let fits = Self {
-            corrections: arena.take_fours(batch.inside.len() * count * values)?,
+            corrections: arena.take_fours(batch.inside.len() * count * values),
             count,
             values,
-            within: arena.take_lanes(within_len(terms, values, call.n))?,
-            system: Sums::new(1, columns, values, arena)?,
-            between: Sums::new(1, columns, values, arena)?,
-            coefficients: arena.take_lanes(values * count * columns)?,
-            pivots: arena.take_lanes(columns)?,
-            units: arena.take_lanes(terms.fixed() * columns)?,
-            solved: arena.take_fours(columns)?,
-            penalties: arena.take(columns)?,
-            apart: if terms.slices > 0 { Some(Apart::new(terms, values, call.n, arena)?) } else { None },
+            within: arena.take_lanes(within_len(terms, values, call.n)),
+            system: Sums::new(1, columns, values, arena),
+            between: Sums::new(1, columns, values, arena),
+            coefficients: arena.take_lanes(values * count * columns),
+            pivots: arena.take_lanes(columns),
+            units: arena.take_lanes(terms.fixed() * columns),
+            solved: arena.take_fours(columns),
+            penalties: arena.take(columns),
+            apart: (terms.slices > 0).then(|| Apart::new(terms, values, call.n, arena)),
         };
         terms.penalties(call.config, call.basis, fits.penalties);
-        Ok(fits)
+        fits
     }
 
     /// Corrects pixels of one sample of the colours `taken`, which the fit to all of them has seen.

@@ -3,7 +3,6 @@
 use super::call::Layout;
 use super::pixels::Image;
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::LANES;
 use crate::matrix::{at, row_at, row_at_mut};
 use crate::rows::{first, part, part_mut};
@@ -121,17 +120,17 @@ impl Layout<'_> {
         self.groups_lens().into_iter().try_fold(0, usize::checked_add)
     }
 
-    pub(super) fn groups<'a>(&self, arena: &mut Arena<'a, f32>) -> Result<Groups<'a>, Error> {
+    pub(super) fn groups<'a>(&self, arena: &mut Arena<'a, f32>) -> Groups<'a> {
         let [list, records, order, corrections] = self.groups_lens();
-        Ok(Groups {
+        Groups {
             count: 0,
             channels: self.config.channels,
             width: self.record_len(),
-            list: arena.take(list)?,
-            records: arena.take(records)?,
-            order: arena.take(order)?,
-            corrections: arena.take(corrections)?,
-        })
+            list: arena.take(list),
+            records: arena.take(records),
+            order: arena.take(order),
+            corrections: arena.take(corrections),
+        }
     }
 
     pub(super) fn window(&self, index: usize) -> [usize; 2] {

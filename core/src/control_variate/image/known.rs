@@ -8,7 +8,6 @@
 use super::batch::{Batch, KNOWN_SUMS};
 use super::products::{AT_ONCE, Eight, Four, NONE, minus, only, plus, product};
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::matrix;
 use crate::real::Real;
@@ -69,14 +68,14 @@ fn coefficient([mean, known, square, mean_product, integral_product]: &Sums) -> 
 impl Batch<'_> {
     /// Computes the coefficient of each slot and channel.
     #[inline(always)]
-    pub(super) fn relate(&mut self, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+    pub(super) fn relate(&mut self, arena: &mut Arena<'_, f32>) {
         let call = self.call;
         let channels = call.config.channels;
         let mut arena = arena.scratch();
         let inside = self.inside.as_flattened();
         // Of each slot alone, and of all before it.
-        let own = arena.take_lanes(KNOWN_SUMS * inside.len())?.as_chunks_mut::<KNOWN_SUMS>().0;
-        let before = arena.take_lanes(KNOWN_SUMS * inside.len())?.as_chunks_mut::<KNOWN_SUMS>().0;
+        let own = arena.take_lanes(KNOWN_SUMS * inside.len()).as_chunks_mut::<KNOWN_SUMS>().0;
+        let before = arena.take_lanes(KNOWN_SUMS * inside.len()).as_chunks_mut::<KNOWN_SUMS>().0;
         let inverse = 1.0 / call.n as f32;
         let place = |slot: usize, channel: usize| (slot / AT_ONCE * channels + channel, slot % AT_ONCE);
         for channel in 0..channels {
@@ -133,6 +132,5 @@ impl Batch<'_> {
                 others = both(&others, own);
             }
         }
-        Ok(())
     }
 }

@@ -136,12 +136,11 @@ pub fn estimate_image_by<P: Processor>(
     }
     let layout = layout.of(n);
     let mut basis = Basis::empty();
-    basis.set(config.basis, layout.shape)?;
+    basis.set(config.basis, layout.shape);
     reader.check()?;
-    if workspace.len() < layout.workspace_len().ok_or(Error::Memory)? {
-        return Err(Error::Memory);
-    }
-    Call { layout, basis: &basis, reader }.run::<P>(&mut Arena::new(workspace), out)
+    let mut arena = Arena::new(workspace, layout.workspace_len())?;
+    Call { layout, basis: &basis, reader }.run::<P>(&mut arena, out);
+    Ok(())
 }
 
 impl<'a> Layout<'a> {

@@ -13,7 +13,6 @@ use super::steps;
 use super::sums::Band;
 use super::terms::Terms;
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::matrix::{at, row_at};
 use crate::processor::Processor;
@@ -23,17 +22,13 @@ use core::hint::black_box;
 
 impl Call<'_> {
     /// All of it: windows some rows at a time, and pixels as soon as no later window has them.
-    pub(super) fn run<P: Processor>(
-        &self,
-        arena: &mut Arena<'_, f32>,
-        out: &mut dyn FnMut(usize, Estimate),
-    ) -> Result<(), Error> {
+    pub(super) fn run<P: Processor>(&self, arena: &mut Arena<'_, f32>, out: &mut dyn FnMut(usize, Estimate)) {
         let wanted = self.windows.wanted;
         let frames = self.windows.frames();
         let [across, down] = self.windows.counts();
         let [rows, touched] = self.band();
-        let mut band = Band::new(self, touched, arena)?;
-        let mut groups = self.groups(arena)?;
+        let mut band = Band::new(self, touched, arena);
+        let mut groups = self.groups(arena);
         let has_fits = self.has_edges() || self.fits_without_edges();
         let mut done = self.windows.top(0);
         for row in (0..down).step_by(rows.max(1)) {
@@ -45,7 +40,7 @@ impl Call<'_> {
                 let end = (first + self.windows_at_once()).min(last * across);
                 self.divide(first, end, &mut groups);
                 self.find_edges(&mut groups);
-                self.fit::<P>(&mut groups, arena)?;
+                self.fit::<P>(&mut groups, arena);
                 steps::add::<P>(self, &groups, &mut band);
             }
             let end = if last < down { self.windows.top(last) } else { wanted.y + wanted.height };
@@ -56,11 +51,10 @@ impl Call<'_> {
             }
             done = end;
         }
-        Ok(())
     }
 
     /// Fits to all groups: first to all of their pixels, then, where some are too bright, to the others.
-    fn fit<P: Processor>(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+    fn fit<P: Processor>(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) {
         let later = if self.is_single_fit() { 0 } else { self.turns() };
         let all = self.fits_without_edges();
         for (pass, has_edges) in (0..=later).flat_map(|pass| [(pass, false), (pass, true)]) {
@@ -94,10 +88,9 @@ impl Call<'_> {
                 if used == 0 {
                     break;
                 }
-                self.batch::<P>(lanes, turn, groups, arena)?;
+                self.batch::<P>(lanes, turn, groups, arena);
             }
         }
-        Ok(())
     }
 
     /// Fits to eight groups. In a later `turn` only pixels within its limits are fitted to.
@@ -107,26 +100,26 @@ impl Call<'_> {
         turn: Option<usize>,
         groups: &mut Groups<'_>,
         arena: &mut Arena<'_, f32>,
-    ) -> Result<(), Error> {
+    ) {
         let arena = &mut arena.scratch();
         let [Group { len, has_edges, .. }, ..] = lanes;
         let terms = Terms::new(self, len, has_edges);
-        let mut batch = Batch::new(self, terms, lanes, arena)?;
+        let mut batch = Batch::new(self, terms, lanes, arena);
         steps::survey::<P>(&mut batch, groups);
         if let Some(turn) = turn {
             batch.leave_out(|group| groups.limits(group, turn));
         }
         if self.image.has_known() {
-            steps::relate::<P>(&mut batch, arena)?;
+            steps::relate::<P>(&mut batch, arena);
         }
-        steps::load::<P>(&mut batch, arena)?;
-        let mut fits = Fits::new(&batch, arena)?;
-        let mut edges = if has_edges { Some(Edges::new(&batch, arena)?) } else { None };
+        steps::load::<P>(&mut batch, arena);
+        let mut fits = Fits::new(&batch, arena);
+        let mut edges = has_edges.then(|| Edges::new(&batch, arena));
         if let Some(edges) = &mut edges {
             steps::load_edges::<P>(edges, &batch);
         }
         let choices = Choices::new(self, &batch.terms);
-        let mut shares = Shares::last(choices, arena)?;
+        let mut shares = Shares::last(choices, arena);
         // Halves choose for each other, then fits to all correct; or fits to all do both.
         let turns = self.turns();
         for step in 0..if turns == 2 { 3 } else { 1 } {
@@ -140,7 +133,7 @@ impl Call<'_> {
                 Some(edges) => steps::correct_edges::<P>(edges, &batch, judges, &mut fits),
                 None => NONE,
             };
-            let spreads = steps::spreads::<P>(choices, &batch, &fits, judges, &mut arena.scratch())?;
+            let spreads = steps::spreads::<P>(choices, &batch, &fits, judges, &mut arena.scratch());
             let chooses = !self.is_single_fit() && (turns == 1 || !is_last);
             if chooses {
                 let colours = if turns == 1 { COLOURS } else { 0 };
@@ -156,7 +149,6 @@ impl Call<'_> {
                 steps::put::<P>(&batch, groups, &fits, turn, &shares);
             }
         }
-        Ok(())
     }
 
     /// What is told of the groups' errors. Bright pixels count: without them the error would be told too small where

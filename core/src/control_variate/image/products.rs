@@ -3,7 +3,6 @@
 use super::super::config::Config;
 use crate::arena::Arena;
 use crate::basis::MAX_DIMS;
-use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::matrix::{copy, halves_mut, packed_len, row_at, row_at_mut};
 use crate::rows::{halves, rows, rows_mut};
@@ -21,8 +20,8 @@ pub(super) const AT_ONCE: usize = 4;
 
 impl<'a> Arena<'a, f32> {
     /// The next groups of eight, by fours.
-    pub(super) fn take_fours(&mut self, count: usize) -> Result<&'a mut [Four], Error> {
-        Ok(self.take_lanes(count * AT_ONCE)?.as_chunks_mut().0)
+    pub(super) fn take_fours(&mut self, count: usize) -> &'a mut [Four] {
+        self.take_lanes(count * AT_ONCE).as_chunks_mut().0
     }
 }
 
@@ -141,11 +140,11 @@ pub(super) struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    pub(super) fn new(columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        let (columns, values) = (arena.take_fours(columns)?, arena.take_fours(values)?);
+    pub(super) fn new(columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Self {
+        let (columns, values) = (arena.take_fours(columns), arena.take_fours(values));
         values.iter_mut().for_each(|four| *four = [NONE; AT_ONCE]);
         let (x, h) = ([[0.0; AT_ONCE_LANES]; MAX_DIMS], [[0.0; AT_ONCE_LANES]; Config::MAX_CONTROLS]);
-        Ok(Self { x, h, columns, values })
+        Self { x, h, columns, values }
     }
 }
 
@@ -169,8 +168,8 @@ impl<'a> Sums<'a> {
         packed_len(columns) + values * columns + values
     }
 
-    pub(super) fn new(parts: usize, columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        Ok(Self { all: arena.take_lanes(parts * Self::len(columns, values))?, columns, values })
+    pub(super) fn new(parts: usize, columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Self {
+        Self { all: arena.take_lanes(parts * Self::len(columns, values)), columns, values }
     }
 
     pub(super) fn empty(&mut self) {

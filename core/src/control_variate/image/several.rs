@@ -9,7 +9,6 @@ use super::products::{AT_ONCE, Eight, Four, NONE, Rows, minus, plus};
 use super::sliced::panels;
 use super::terms::Terms;
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::matrix::{at, row_at, row_at_mut};
 use crate::rows::{first, rows, rows_mut};
@@ -36,18 +35,18 @@ impl<'a> Several<'a> {
         samples + panels * (3 * LANES + 1 + LANES * terms.slices * terms.columns())
     }
 
-    pub(super) fn new(terms: &Terms, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+    pub(super) fn new(terms: &Terms, values: usize, arena: &mut Arena<'a, f32>) -> Self {
         let panels = panels(values * terms.ends.len());
-        let coefficients = arena.take_lanes(LANES * terms.slices * panels * terms.columns())?;
+        let coefficients = arena.take_lanes(LANES * terms.slices * panels * terms.columns());
         // What a candidate does not use stays 0.
         coefficients.iter_mut().for_each(|coefficients| *coefficients = NONE);
-        Ok(Self {
-            columns: arena.take_fours(terms.columns())?,
-            samples: Rows::new(terms.functions, values, arena)?,
-            explained: arena.take_lanes(3 * LANES * panels)?.as_chunks_mut().0,
-            apart: arena.take_lanes(panels)?,
+        Self {
+            columns: arena.take_fours(terms.columns()),
+            samples: Rows::new(terms.functions, values, arena),
+            explained: arena.take_lanes(3 * LANES * panels).as_chunks_mut().0,
+            apart: arena.take_lanes(panels),
             coefficients,
-        })
+        }
     }
 
     /// Sets the coefficients, which are given for each value, candidate, slice and column.

@@ -2,7 +2,6 @@
 
 use super::products::{Eight, Four, NONE, Part, Sums};
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::matrix::{from, from_mut, halves_mut, packed_len, row_at_mut, row_mut};
 use crate::rows::{first, rows_mut};
@@ -35,11 +34,11 @@ impl<'a> Sliced<'a> {
         eights * (columns + values + LANES) - LANES * packed_len(eights)
     }
 
-    pub(super) fn new(slices: usize, columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        let all = arena.take_lanes(slices * LANES * Self::each(columns, values))?;
-        let sample = arena.take_lanes(panels(columns + values))?;
+    pub(super) fn new(slices: usize, columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Self {
+        let all = arena.take_lanes(slices * LANES * Self::each(columns, values));
+        let sample = arena.take_lanes(panels(columns + values));
         all.iter_mut().chain(sample.iter_mut()).for_each(|sum| *sum = NONE);
-        Ok(Self { all, sample, columns, values })
+        Self { all, sample, columns, values }
     }
 
     /// Adds four rows of samples, each to the sums of its lanes' slices.

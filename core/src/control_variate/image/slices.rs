@@ -13,7 +13,6 @@ use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, minus, on
 use super::several::Several;
 use super::terms::{SINGULAR, Terms, scale};
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
 use crate::matrix::{
@@ -88,23 +87,23 @@ impl<'a> Apart<'a> {
         slices * each + border + order * (1 + terms.all_own()) + width + AT_ONCE * width + coefficients + several
     }
 
-    pub(super) fn new(terms: &Terms, values: usize, n: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+    pub(super) fn new(terms: &Terms, values: usize, n: usize, arena: &mut Arena<'a, f32>) -> Self {
         let (slices, width, order) = (terms.slices, terms.columns(), Self::order(terms, values));
         let fits = terms.ends.len();
-        Ok(Self {
+        Self {
             width,
             own: 0,
-            totals: Sums::new(slices, width, values, arena)?,
-            blocks: arena.take_lanes(slices * order * terms.all_own())?,
-            border: arena.take_lanes(packed_len(width))?,
-            sides: arena.take_lanes((values + terms.fixed()) * width)?,
-            gathered: arena.take_lanes(order * terms.all_own() + width)?,
-            solved: arena.take_lanes(order)?,
-            columns: arena.take_fours(width)?,
-            trends: arena.take_lanes(values * fits * terms.fixed())?,
-            coefficients: arena.take_lanes(values * fits * slices * width)?,
-            several: if n > 1 { Some(Several::new(terms, values, arena)?) } else { None },
-        })
+            totals: Sums::new(slices, width, values, arena),
+            blocks: arena.take_lanes(slices * order * terms.all_own()),
+            border: arena.take_lanes(packed_len(width)),
+            sides: arena.take_lanes((values + terms.fixed()) * width),
+            gathered: arena.take_lanes(order * terms.all_own() + width),
+            solved: arena.take_lanes(order),
+            columns: arena.take_fours(width),
+            trends: arena.take_lanes(values * fits * terms.fixed()),
+            coefficients: arena.take_lanes(values * fits * slices * width),
+            several: (n > 1).then(|| Several::new(terms, values, arena)),
+        }
     }
 
     /// Makes the fits to the colours `training`, and corrects the pixels of others, or of one sample those, by fits to

@@ -11,7 +11,6 @@ use super::products::{COLOURS, Colours, Eight, Four};
 use super::slices::Apart;
 use super::sums::Band;
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::processor::{Processor, Step};
 
 /// Corrects every pixel of the colours `taken`, of which fits have seen no sample, by those to the others of them.
@@ -56,8 +55,8 @@ macro_rules! steps {
 
 steps! {
     survey = Batch::survey(batch: &'s mut Batch<'a>, groups: &'s Groups<'s>) -> ();
-    relate = Batch::relate(batch: &'s mut Batch<'a>, arena: &'s mut Arena<'a, f32>) -> Result<(), Error>;
-    load = Batch::load(batch: &'s mut Batch<'a>, arena: &'s mut Arena<'a, f32>) -> Result<(), Error>;
+    relate = Batch::relate(batch: &'s mut Batch<'a>, arena: &'s mut Arena<'a, f32>) -> ();
+    load = Batch::load(batch: &'s mut Batch<'a>, arena: &'s mut Arena<'a, f32>) -> ();
     factor = Fits::factor(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, training: Colours) -> ();
     leave_own = Fits::leave_own(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, taken: Colours) -> ();
     correct_colour = Fits::correct_colour(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, colour: usize) -> ();
@@ -72,7 +71,7 @@ steps! {
     ) -> Eight;
     spreads = Spreads::new(
         choices: Choices, batch: &'s Batch<'s>, fits: &'s Fits<'s>, taken: Colours, arena: &'s mut Arena<'a, f32>,
-    ) -> Result<Spreads<'a>, Error>;
+    ) -> Spreads<'a>;
     choose = Spreads::choose(
         spreads: &'s Spreads<'s>, colours: usize, time: usize, is_stratified: bool, present: &'s Eight,
         shares: &'s mut Shares<'a>,

@@ -6,7 +6,6 @@ use super::call::{Call, Layout};
 use super::groups::{Groups, Place};
 use super::products::{Eight, NONE, product};
 use crate::arena::Arena;
-use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::matrix::{self, from, halves_mut, row_at_mut};
 use crate::real::Real;
@@ -79,11 +78,11 @@ fn every(step: usize, numbers: &[f32]) -> Eight {
 
 impl<'a> Band<'a> {
     /// Empty.
-    pub(super) fn new(call: &Call<'_>, rows: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+    pub(super) fn new(call: &Call<'_>, rows: usize, arena: &mut Arena<'a, f32>) -> Self {
         let rows_of_frames = rows * call.windows.frames();
-        let sums = arena.take_lanes(call.eights() * rows_of_frames * sums_len(call.config.channels))?;
+        let sums = arena.take_lanes(call.eights() * rows_of_frames * sums_len(call.config.channels));
         sums.iter_mut().for_each(|sum| *sum = NONE);
-        Ok(Self { sums, rows })
+        Self { sums, rows }
     }
 }
 
