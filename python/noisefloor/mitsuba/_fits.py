@@ -76,7 +76,7 @@ def kind():
     """The class of integrators of the variant that is set."""
 
     class NoisefloorFits(mi.CppADIntegrator):
-        """Renders in one pass; order and `known` are described in integrations/mitsuba/README.md."""
+        """Renders in one pass; `order`, `stride` and `known` are described in integrations/mitsuba/README.md."""
 
         def __init__(self, props):
             super().__init__(props)
@@ -86,7 +86,8 @@ def kind():
             if isinstance(found[0], (mi.CppADIntegrator, mi.AdjointIntegrator)):
                 raise ValueError(f"noisefloor_fits: holds an integrator such as path, not {type(found[0]).__name__}")
             self.inner = found[0]
-            self.order, self.known = int(props.get("order", 2)), bool(props.get("known", True))
+            self.order, self.stride = int(props.get("order", 2)), int(props.get("stride", 8))
+            self.known = bool(props.get("known", True))
             # Why `known` was left out, or "".
             self.unknown = ""
 
@@ -121,7 +122,7 @@ def kind():
                     more = dict(zip(("known", "known_integrals"), a))
             found = image_estimate(
                 u, f, surfaces=surfaces(middle).reshape(height, width), order=self.order, slices=lights,
-                stratified=True, channels=True, threads=dr.thread_count(), **more,
+                stride=self.stride, stratified=True, channels=True, threads=dr.thread_count(), **more,
             )  # fmt: skip
             return mi.TensorXf(found.mean)
 
@@ -129,6 +130,6 @@ def kind():
             return []
 
         def to_string(self):
-            return f"NoisefloorFits[order={self.order}, known={self.known}, {self.inner}]"
+            return f"NoisefloorFits[order={self.order}, stride={self.stride}, known={self.known}, {self.inner}]"
 
     return NoisefloorFits
