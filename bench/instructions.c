@@ -96,7 +96,7 @@ static void call_accumulator(void)
     }
 }
 
-static const nf_cv_samples pixels = {.u = u, .f = f, .n = SPP};
+static nf_cv_samples pixels = {.u = u, .f = f, .n = SPP};
 
 static void prepare_image(void)
 {
@@ -123,6 +123,23 @@ static void prepare_edges(void)
     workspace = allocate(bytes, "nf_cv_image_workspace_size");
     for (size_t i = 0; i < SAMPLES; ++i)
         f[i] = u[2 * i] + u[2 * i + 1] < 1.0f ? f[i] : 0;
+}
+
+/* A third number picks one of 16 lights. */
+static void prepare_slices(void)
+{
+    static float picked[3 * SAMPLES];
+    configure(NF_CV_ROBUST);
+    config.dims = 3, config.slices = 16;
+    image.width = SIDE, image.height = SIDE;
+    pixels.u = picked;
+    bytes = nf_cv_image_workspace_size(&config, &image, &pixels);
+    workspace = allocate(bytes, "nf_cv_image_workspace_size");
+    for (size_t i = 0; i < SAMPLES; ++i) {
+        memcpy(picked + 3 * i, u + 2 * i, 2 * sizeof *u);
+        picked[3 * i + 2] = nf_rng_uniform(&rng);
+        f[i] *= picked[3 * i + 2];
+    }
 }
 
 static void call_image(void)
@@ -272,6 +289,7 @@ static const struct {
     {"nf_cv_image_estimate", prepare_image, call_image, 1, SAMPLES, "sample"},
     {"nf_cv_image_estimate bright pixel", prepare_bright_image, call_image, 1, SAMPLES, "sample"},
     {"nf_cv_image_estimate edges", prepare_edges, call_image, 1, SAMPLES, "sample"},
+    {"nf_cv_image_estimate 16 slices", prepare_slices, call_image, 1, SAMPLES, "sample"},
     {"nf_sampler_draw", nothing, call_sampler, 100, 64, "draw"},
     {"nf_sampler_draw domain", nothing, call_sampler_domain, 100, 64, "draw"},
     {"nf_sampler_draw 4 domain", nothing, call_sampler_4, 100, 64, "draw"},
