@@ -2,6 +2,7 @@
 recorded RGB one."""
 
 import ctypes
+import itertools
 import os
 import pathlib
 import re
@@ -99,16 +100,26 @@ class Recorded(unittest.TestCase):
         self.assertGreater(np.abs(show("README.md", 0, 2) - picture).mean(), 0)
 
     def test_large_indices_and_the_root(self):
-        index = np.random.default_rng(1).integers(0, 2**32, 2048, np.uint32)
+        every = np.random.default_rng(1).integers(0, 2**32, 2048, np.uint32)
         domain = np.random.default_rng(2).integers(0, 2**32, 2048, np.uint32)
         domain[:64] = 0
-        for scrambled in (False, True):
+        for scrambled, few in itertools.product((False, True), repeat=2):
+            index = every % 64 if few else every
             state = mi.UInt32(domain), mi.UInt32(17), mi.UInt32(40001), dr.brev(mi.UInt32(index))
-            u = [*_sampler.draw(*state, False, scrambled), *_sampler.draw(*state, True, scrambled)]
+            u = [*_sampler.draw(*state, False, scrambled, few), *_sampler.draw(*state, True, scrambled, few)]
             for k, (d, i) in enumerate(zip(domain, index)):
                 value = (ctypes.c_float * 4)()
                 _c.sampler_draw(_c.Sampler(int(d), int(i), 17, 40001, int(scrambled)), 4, _c.address(value))
                 self.assertEqual([v[k] for v in u], list(value))
+
+    def test_more_samples_than_were_said(self):
+        one = sampler(2, 1, sample_count=16)
+        one.seed(0, 2 * 16)
+        for _ in range(5):
+            one.advance()
+        expected = (ctypes.c_float * 2)()
+        _c.sampler_draw(_c.sampler_domain(_c.sampler_pixel(1, 0, 0, 95), 0), 2, _c.address(expected))
+        self.assertEqual([float(v[-1]) for v in np.array(one.next_2d())], list(expected))
 
     def test_film_and_lens_are_four_numbers_of_one_domain(self):
         one = sampler(9, 7, sample_count=16, lens=True)

@@ -8,6 +8,7 @@ import ctypes
 
 import drjit as dr
 import mitsuba as mi
+import numpy
 
 from .. import _c
 
@@ -22,11 +23,18 @@ _tables = {}
 
 
 def table() -> "mi.UInt32":
-    """The numbers that samplers read, on the variant's device: state of a function that `drjit.freeze` records."""
+    """The numbers that samplers read, on the variant's device: state of a function that `drjit.freeze` records.
+
+    First the library's, then the same for samples of which the first digits are all: these say both coordinates'
+    leading digits, so that what is for either is in one place.
+    """
     variant = mi.variant()
     if variant not in _tables:
         numbers = ctypes.cast(_c.sampler_table(), ctypes.POINTER(ctypes.c_uint32))
-        _tables[variant] = mi.UInt32(numbers[: SIZE * SIZE << BITS])
+        entries = numpy.ctypeslib.as_array(numbers, (SIZE * SIZE, 1 << BITS))
+        second = _pascal(numpy.arange(1 << BITS, dtype=numpy.uint32) << (32 - BITS)) >> (32 - BITS)
+        both = (entries & 0xFFFF) | (entries[:, second] & 0xFFFF0000)
+        _tables[variant] = mi.UInt32(numpy.concatenate([entries, both], None))
         dr.eval(_tables[variant])
     return _tables[variant]
 
@@ -42,9 +50,9 @@ def _child(domain, key):
     return dr.select(h == 0, mi.UInt32(1), h)
 
 
-def draw(domain, x, y, first, second=False, scrambled=False):
+def draw(domain, x, y, first, second=False, scrambled=False, few=False):
     """Two numbers of nf_sampler_draw(), of four the second two: for arrays of domains, pixels (hashed, if white) and
-    reversed indices."""
+    reversed indices. With `few`, where all of these are below 2^BITS."""
     random = domain + x * 0x2C1B3C6D + y * 0x297A2D39
     random = (random ^ (random >> 15)) * 0x735A2D97
     random ^= random >> 15
@@ -55,7 +63,7 @@ def draw(domain, x, y, first, second=False, scrambled=False):
     if second:
         other = domain * 0x9E3779B9 + 0x632BE5AB
         x, y, first = x + (other >> 7), y + (other >> 19), _multiply(first)
-    values = _pair(((y & (SIZE - 1)) << 5) | (x & (SIZE - 1)), first)
+    values = _pair(((y & (SIZE - 1)) << 5) | (x & (SIZE - 1)), first, few)
     if scrambled:
         number = 3 if second else 1
         values = [v + _mix(domain + (FINE[0] * (number + k) & 0xFFFFFFFF)) for k, v in enumerate(values)]
@@ -80,15 +88,23 @@ def _multiply(first):
     return result
 
 
-def _pair(pixel, first):
+def _pascal(first):
     second = first ^ (first << 16)
     for mask, shift in ((0x00FF00FF, 8), (0x0F0F0F0F, 4), (0x33333333, 2), (0x55555555, 1)):
         second ^= (second & mask) << shift
+    return second
+
+
+def _pair(pixel, first, few):
+    second = _pascal(first)
+    begin = SIZE * SIZE << BITS if few else 0
 
     def entry(value):
-        return dr.gather(mi.UInt32, table(), (pixel << BITS) | (value >> (32 - BITS)))
+        return dr.gather(mi.UInt32, table(), begin | (pixel << BITS) | (value >> (32 - BITS)))
 
-    values = first ^ (entry(first) << 16), second ^ (entry(second) & 0xFFFF0000)
+    of_first = entry(first)
+    of_second = of_first if few else entry(second)
+    values = first ^ (of_first << 16), second ^ (of_second & 0xFFFF0000)
     return [v ^ ((((pixel << 8) | (v >> 24)) * factor) >> 8) for v, factor in zip(values, FINE)]
 
 
@@ -102,7 +118,7 @@ def _jit_sampler():
             self.white, self.scramble = (bool(props.get(name, False)) for name in ("white", "scramble"))
             self.lens = bool(props.get("lens", False))
             self.size = int(props.get("width", 0)), int(props.get("height", 0))
-            self.per_wave = 1
+            self.per_wave = self.most = 1
             self._clear()
 
         def _clear(self):
@@ -122,6 +138,7 @@ def _jit_sampler():
                     f"noisefloor: the sampler takes its film for {width} x {height} pixels, and {wavefront_size} "
                     "samples are not so many times a number. Call noisefloor.mitsuba.prepare(scene) once the scene is "
                     "loaded, and after a film's size has changed, or give the plugin `width` and `height`")  # fmt: skip
+            self.most = self.per_wave  # indices are below this
             # Opaque: as a literal it would be part of the kernel, and every seed would compile one.
             seed = mi.UInt32(seed)
             self.base = dr.select(seed == 0, mi.UInt32(0), _child(mi.UInt32(FRAMES), seed))
@@ -140,6 +157,7 @@ def _jit_sampler():
         def advance(self):
             self.index = self.index + self.per_wave
             self.dimension, self.requests = mi.UInt32(0), 0
+            self.most += self.per_wave
 
         def schedule_state(self):
             dr.schedule(self.x, self.y, self.index, self.base, self.dimension)
@@ -162,7 +180,7 @@ def _jit_sampler():
             # Arrays of their own: a loop that changes one sampler must not change the other.
             for name in ("x", "y", "index", "base", "dimension"):
                 setattr(other, name, mi.UInt32(getattr(self, name)))
-            other.requests = self.requests
+            other.requests, other.most = self.requests, self.most
             return other
 
         def _draw(self, count):
@@ -170,7 +188,8 @@ def _jit_sampler():
             domain = _child(self.base, mi.UInt32(0) if on_lens else self.dimension)
             self.dimension = self.dimension + count
             self.requests += 1
-            return draw(domain, self.x, self.y, dr.brev(self.index), on_lens, self.scramble)
+            few = max(self.most, self.sample_count()) <= 1 << BITS
+            return draw(domain, self.x, self.y, dr.brev(self.index), on_lens, self.scramble, few)
 
         def next_1d(self, active=True):
             return self._draw(1)[0]
