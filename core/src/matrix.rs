@@ -1,6 +1,6 @@
 //! Checked views of matrices, over memory that somebody else owns.
 //!
-//! What lies outside reads as zero or as an empty row, so formulas over views have no index that could be out of bounds.
+//! What lies outside reads as zero or as an empty row, so no index of a formula over views can be out of bounds.
 //!
 //! `S` is `&[T]` or `&mut [T]`.
 

@@ -70,7 +70,7 @@ pub(crate) fn size(n: usize, columns: usize, channels: usize) -> Option<usize> {
 
 impl<'a, R: Real> Design<'a, R> {
     /// Evaluates the basis at the samples of a subset, which were checked before. With `centre`, columns and values
-    /// have mean zero; without, columns are as they are, and values relative to the first sample. None without a sample.
+    /// have mean zero; without, columns are as they are, and values relative to the first sample. None without samples.
     // See `Reader`; without it on what follows, estimates of one pixel take 9 to 19 % more instructions.
     #[inline(always)]
     pub(crate) fn load(

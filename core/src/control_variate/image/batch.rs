@@ -73,7 +73,7 @@ pub(super) struct Batch<'a> {
     pub(super) functions: &'a mut [Four],
     /// Of pixels' means, times the root of the number of samples. Where slices are apart: of samples, slice by slice.
     pub(super) between: Sums<'a>,
-    /// Of several samples in each pixel, of how far they are from their pixel's mean. Where slices are apart: of values.
+    /// Of several samples in each pixel, of how far they are from their pixel's mean; of values where slices are apart.
     pub(super) within: Sums<'a>,
 }
 
