@@ -165,11 +165,21 @@ impl Case {
         } else {
             let places: Vec<Vec<f64>> = rows.rows.iter().step_by(n).map(|row| row[..axes].to_vec()).collect();
             let share = |channel: usize| pixels::noise_share(&places, &values_of(channel), n);
-            // Of many slices each sample counts as much as one of another pixel.
+            let share = (0..config.channels).map(share).fold(1.0, f64::min);
             let shared = degrees.len() - config.slices;
-            let is_apart = basis.weights.len() - shared > 32.max(2 * shared);
-            let share = if is_apart { 1.0 } else { (0..config.channels).map(share).fold(1.0, f64::min) };
-            pixels::fit(&rows, &values_of(channel), n, share, strength)
+            if basis.weights.len() - shared > 32.max(2 * shared) {
+                // Many slices: values alone are less a part of their pixel's mean.
+                let part = 1.0 - share.sqrt();
+                let mut values = values_of(channel);
+                for own in values.chunks_mut(n) {
+                    let mean = own.iter().sum::<f64>() / n as f64;
+                    let factor = if config.stratified { 1.0 } else { 1.0 - part / n as f64 };
+                    own.iter_mut().for_each(|value| *value = (*value - part * mean) / factor);
+                }
+                pixels::fit(&rows, &values, n, 1.0, strength)
+            } else {
+                pixels::fit(&rows, &values_of(channel), n, share, strength)
+            }
         };
         fit.slopes[..axes].fill(0.0);
         let own = place * n..(place + 1) * n;
@@ -276,7 +286,8 @@ fn slices_and_controls() {
     }
     // So many pixels that indicators have products with the axes.
     let sliced = Config { slices: 14, estimator: Estimator::LeaveOneOut, ..Config::new(3, 1, 1) };
-    for n in [1, 3] {
+    for (n, stratified) in [(1, false), (3, false), (3, true)] {
+        let sliced = Config { stratified, ..sliced };
         Case::new(sliced, [13, 13, 1], n, &mut rng).with_controls(1).check("slopes of many slices");
     }
 }

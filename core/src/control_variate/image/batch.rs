@@ -15,7 +15,7 @@ use super::sliced::Sliced;
 use super::terms::{MAX_AXES, Terms};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, copy, first_mut, from, from_mut, halves_mut, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{at, copy, from, from_mut, halves_mut, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
 use crate::rows::{first, halves, rows, rows_mut};
 use core::array::from_fn;
@@ -63,7 +63,7 @@ pub(super) struct Batch<'a> {
     /// For each block and channel, the coefficient of what is known, and its integral.
     pub(super) coefficients: &'a mut [Four],
     pub(super) integrals: &'a mut [Four],
-    /// For each block, the slices of the pixels' one sample, where slices are apart.
+    /// For each block, the slices of the pixels' samples, where slices are apart and pixels have one.
     pub(super) slices: &'a mut [Four],
     /// Values of a sample.
     pub(super) values: usize,
@@ -71,10 +71,12 @@ pub(super) struct Batch<'a> {
     pub(super) means: &'a mut [Four],
     /// For each block and function, its mean over the pixels' samples.
     pub(super) functions: &'a mut [Four],
-    /// Of pixels' means, times the root of the number of samples. Where slices are apart: of samples, slice by slice.
+    /// Of pixels' means, times the root of the number of samples.
     pub(super) between: Sums<'a>,
-    /// Of several samples in each pixel, of how far they are from their pixel's mean; of values where slices are apart.
+    /// Of several samples in each pixel, of how far they are from their pixel's mean.
     pub(super) within: Sums<'a>,
+    /// Of samples, by slices where these are apart.
+    pub(super) sliced: Sums<'a>,
 }
 
 pub(super) fn blocks(layout: &Layout<'_>, slots: usize) -> usize {
@@ -87,21 +89,30 @@ fn parts(layout: &Layout<'_>) -> [usize; 2] {
     [parts, if layout.n > 1 { parts } else { 0 }]
 }
 
+/// For each pixel how many functions' means are kept, and how many slices.
+fn kept(terms: &Terms, n: usize) -> (usize, usize) {
+    match (terms.slices > 0, n) {
+        (false, _) => (terms.functions, 0),
+        (true, 1) => (terms.functions, 1),
+        (true, _) => (0, 0),
+    }
+}
+
 /// Numbers that a batch of so many slots takes.
 pub(super) fn batch_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
     let (columns, functions) = (terms.columns(), terms.functions);
     let (channels, values) = (layout.config.channels, layout.values());
     let known = if layout.image.has_known() { 2 * (channels + KNOWN_SUMS) } else { 0 };
-    let (slices, apart) = (terms.slices.max(1), usize::from(terms.slices > 0));
-    let each = 2 + apart + terms.fixed() + 2 * channels + values + functions + known;
-    let rows = AT_ONCE * (functions + columns + 2 * values);
-    let centred = terms.centred();
-    let pixel = Sums::len(centred, values) + centred + 2 * values;
-    let deviations = AT_ONCE * (centred + values) * centred + AT_ONCE * values;
+    let (kept, apart) = kept(terms, layout.n);
+    let each = 2 + apart + terms.fixed() + 2 * channels + values + kept + known;
+    let summed = terms.of_slices(values, layout.n);
+    let rows = AT_ONCE * (functions + columns + values + values.max(summed));
+    let pixel = Sums::len(kept, values) + kept + 2 * values;
+    let deviations = AT_ONCE * (kept + values) * kept + AT_ONCE * values;
     let [between, within] = parts(layout);
-    let within = within * Sums::len(if apart > 0 { 0 } else { columns }, values);
-    let sums = between * slices * Sums::len(columns, values) + Sliced::len(terms.slices, columns, values);
-    let sums = sums + within + rows + pixel + deviations;
+    let sliced = between * terms.slices * Sums::len(columns, summed) + Sliced::len(terms.slices, columns, summed);
+    let sums = between * Sums::len(terms.of_means(), values) + within * Sums::len(terms.of_deviations(), values);
+    let sums = sums + sliced + rows + pixel + deviations;
     blocks(layout, slots).checked_mul(AT_ONCE * each)?.checked_add(sums)?.checked_mul(LANES)
 }
 
@@ -133,6 +144,7 @@ impl<'a> Batch<'a> {
         let (columns, channels, values) = (terms.columns(), call.config.channels, call.values());
         let (blocks, [between, within]) = (blocks(call, slots), parts(call));
         let known = if call.image.has_known() { blocks * channels } else { 0 };
+        let ((kept, apart), summed) = (kept(&terms, call.n), terms.of_slices(values, call.n));
         Self {
             call,
             lanes,
@@ -146,12 +158,13 @@ impl<'a> Batch<'a> {
             ranges: arena.take_fours(blocks * 2 * channels),
             coefficients: arena.take_fours(known),
             integrals: arena.take_fours(known),
-            slices: arena.take_fours(if terms.slices > 0 { blocks } else { 0 }),
+            slices: arena.take_fours(blocks * apart),
             values,
             means: arena.take_fours(blocks * values),
-            functions: arena.take_fours(blocks * terms.functions),
-            between: Sums::new(between * terms.slices.max(1), columns, values, arena),
-            within: Sums::new(within, if terms.slices > 0 { 0 } else { columns }, values, arena),
+            functions: arena.take_fours(blocks * kept),
+            between: Sums::new(between, terms.of_means(), values, arena),
+            within: Sums::new(within, terms.of_deviations(), values, arena),
+            sliced: Sums::new(between * terms.slices, columns, summed, arena),
             terms,
         }
     }
@@ -323,19 +336,29 @@ impl<'a> Batch<'a> {
         }
     }
 
+    /// Values in units.
+    #[inline(always)]
+    pub(super) fn put_in_units(&self, values: &mut [Four]) {
+        for (value, units) in values.iter_mut().zip(self.units.iter().take(self.call.config.channels).cycle()) {
+            *value = value.map(|value| units.apply(&value));
+            lanes::keep_together();
+        }
+    }
+
     /// Reads all samples and sums their products.
     #[inline(always)]
     pub(super) fn load(&mut self, arena: &mut Arena<'_, f32>) {
-        let (call, values, slices) = (self.call, self.values, self.terms.slices);
+        let (call, values, slices, mut arena) = (self.call, self.values, self.terms.slices, arena.scratch());
         let (columns, functions, fixed) = (self.terms.columns(), self.terms.functions, self.terms.fixed());
-        let mut arena = arena.scratch();
+        let (summed, (kept, _)) = (self.terms.of_slices(values, call.n), kept(&self.terms, call.n));
         let mut samples = Rows::new(functions, values, &mut arena);
-        let mut pixels = Rows::new(columns, values, &mut arena);
-        let mut apart = Apart::new(self.terms.centred(), values, &mut arena);
-        let mut sliced = Sliced::new(slices, columns, values, &mut arena);
+        let mut pixels = Rows::new(columns, values.max(summed), &mut arena);
+        let mut deviations = Deviations::new(kept, values, &mut arena);
+        let mut sliced = Sliced::new(slices, columns, summed, &mut arena);
         self.set_units();
-        self.between.empty();
-        self.within.empty();
+        for sums in [&mut self.between, &mut self.within, &mut self.sliced] {
+            sums.empty();
+        }
         let parts = if self.has_colours { COLOURS } else { 1 };
         for part in 0..parts {
             for block in (part..self.inside.len()).step_by(parts) {
@@ -345,72 +368,111 @@ impl<'a> Batch<'a> {
                     copy(row_at_mut(self.means, values, block), samples.values);
                 } else {
                     for row in 0..AT_ONCE {
-                        self.load_several((block, row), &mut samples, &mut apart, &mut pixels, &mut sliced);
+                        if slices > 0 {
+                            self.load_sliced((block, row), part, &mut samples, &mut pixels, &mut sliced);
+                        } else {
+                            self.load_several((block, row), &mut samples, &mut deviations);
+                        }
                     }
                 }
-                if slices == 0 {
-                    self.put_means(block, &mut pixels);
-                    self.between.add(part, pixels.columns, pixels.values);
-                } else if call.n == 1 {
-                    self.put_means(block, &mut pixels);
+                self.put_means(block, &mut pixels);
+                if slices > 0 && call.n == 1 {
                     let picked = call.slices(&samples);
                     sliced.add(&picked, pixels.columns, pixels.values);
                     row_at_mut(self.slices, 1, block).fill(picked);
+                } else {
+                    let columns = first(pixels.columns, self.terms.of_means());
+                    self.between.add(part, columns, first(pixels.values, values));
                 }
-                if call.n > 1 {
+                if call.n > 1 && slices == 0 {
                     let inside = at(self.inside, block);
                     let mut places = [[NONE; AT_ONCE]; MAX_FIXED];
                     for (out, place) in places.iter_mut().zip(row_at(self.places, fixed, block)) {
                         *out = zip_four(&inside, place, only);
                     }
-                    apart.mirror(self.terms.centred());
-                    self.within.add_apart(part, &self.terms, first(&places, fixed), &apart);
+                    deviations.mirror(functions);
+                    self.within.add_apart(part, &self.terms, first(&places, fixed), &deviations);
                 }
             }
-            sliced.put(part * slices, &mut self.between);
+            sliced.put(part * slices, &mut self.sliced);
         }
         if self.is_joined {
-            self.between.join();
-            self.within.join();
+            for sums in [&mut self.between, &mut self.within, &mut self.sliced] {
+                sums.join();
+            }
+        }
+    }
+
+    /// Reads the samples of one slot, where slices are apart: their means, then sums of samples by slices.
+    #[inline(always)]
+    fn load_sliced(
+        &mut self,
+        (block, row): (usize, usize),
+        part: usize,
+        samples: &mut Rows<'_>,
+        pixels: &mut Rows<'_>,
+        sliced: &mut Sliced<'_>,
+    ) {
+        let (call, values, inverse) = (self.call, self.values, 1.0 / self.call.n as f32);
+        let inside = at(self.inside, block)[row % AT_ONCE];
+        let one = at(row_at(self.places, self.terms.fixed(), block), 0)[row % AT_ONCE];
+        // Of each value the first, and sums of how far others are from it, and of squares of this.
+        let mut sums = [[NONE; 3]; 2 * Config::MAX_CHANNELS];
+        for begin in (0..call.n).step_by(AT_ONCE) {
+            let count = AT_ONCE.min(call.n - begin);
+            call.read_values(self, (block, row), begin..begin + count, samples.values);
+            for ([first, total, squares], value) in sums.iter_mut().zip(samples.values.iter()) {
+                *first = if begin == 0 { value[0] } else { *first };
+                for value in value.iter().take(count) {
+                    let apart = minus(value, first);
+                    *total = plus(total, &apart);
+                    *squares = lanes::plus_product(*squares, apart, apart);
+                }
+            }
+        }
+        let means = row_at_mut(self.means, values, block).iter_mut().zip(self.within.part_mut(part).squares);
+        for ((mean, square), [first, total, squares]) in means.zip(&sums) {
+            let average = total.map(|total| total * inverse);
+            mean[row % AT_ONCE] = only(&one, &plus(&average, first));
+            let left = lanes::minus_product(*squares, average, *total);
+            *square = plus(square, &only(&inside, &left.map(|left| Real::max(left, 0.0))));
+        }
+        for begin in (0..call.n).step_by(AT_ONCE) {
+            let count = AT_ONCE.min(call.n - begin);
+            call.read(self, (block, row..row + 1), begin..begin + count, samples);
+            let lines = from_fn(|line| if line < count { inside } else { NONE });
+            self.put_samples((block, row), &lines, samples.columns, pixels.columns);
+            let (own, of_pixel) = halves_mut(pixels.values, values);
+            for (out, value) in own.iter_mut().zip(samples.values.iter()) {
+                *out = zip_four(&lines, value, only);
+            }
+            for (out, mean) in of_pixel.iter_mut().zip(row_at(self.means, values, block)) {
+                *out = lines.map(|line| only(&line, &mean[row % AT_ONCE]));
+            }
+            sliced.add(&call.slices(samples), pixels.columns, pixels.values);
         }
     }
 
     /// Reads the samples of one slot: their means, and the products of how far they are from those.
     #[inline(always)]
-    fn load_several(
-        &mut self,
-        (block, row): (usize, usize),
-        samples: &mut Rows<'_>,
-        apart: &mut Apart<'_>,
-        pixels: &mut Rows<'_>,
-        sliced: &mut Sliced<'_>,
-    ) {
-        let (call, fixed, slices, centred) = (self.call, self.terms.fixed(), self.terms.slices, self.terms.centred());
+    fn load_several(&mut self, (block, row): (usize, usize), samples: &mut Rows<'_>, deviations: &mut Deviations<'_>) {
+        let (call, fixed, functions) = (self.call, self.terms.fixed(), self.terms.functions);
         let inside = at(self.inside, block)[row % AT_ONCE];
         let is_full = inside == [1.0; LANES];
-        apart.sums.empty();
-        apart.totals.iter_mut().for_each(|sum| *sum = NONE);
+        deviations.sums.empty();
+        deviations.totals.iter_mut().for_each(|sum| *sum = NONE);
         for begin in (0..call.n).step_by(AT_ONCE) {
             let count = AT_ONCE.min(call.n - begin);
             call.read(self, (block, row..row + 1), begin..begin + count, samples);
-            if slices > 0 {
-                let lines = from_fn(|line| if line < count { inside } else { NONE });
-                self.put_samples((block, row), &lines, samples.columns, pixels.columns);
-                for (out, value) in pixels.values.iter_mut().zip(samples.values.iter()) {
-                    *out = zip_four(&lines, value, only);
-                }
-                sliced.add(&call.slices(samples), pixels.columns, pixels.values);
-            }
             if begin == 0 {
-                apart.firsts.iter_mut().zip(samples.values.iter()).for_each(|(first, values)| *first = values[0]);
+                deviations.firsts.iter_mut().zip(samples.values.iter()).for_each(|(first, values)| *first = values[0]);
             }
             // Differences tell equal values from such as are nearly so.
-            for (values, first) in samples.values.iter_mut().zip(apart.firsts.iter()) {
+            for (values, first) in samples.values.iter_mut().zip(deviations.firsts.iter()) {
                 *values = values.map(|value| minus(&value, first));
             }
-            let columns = first_mut(samples.columns, centred);
-            let columns = columns.iter_mut().chain(samples.values.iter_mut());
-            for (sum, four) in apart.totals.iter_mut().zip(columns) {
+            let columns = samples.columns.iter_mut().chain(samples.values.iter_mut());
+            for (sum, four) in deviations.totals.iter_mut().zip(columns) {
                 four.iter_mut().skip(count).for_each(|row| *row = NONE);
                 *sum = plus(sum, &total(four));
                 lanes::keep_together();
@@ -420,25 +482,26 @@ impl<'a> Batch<'a> {
                     *values = values.map(|value| only(&inside, &value));
                 }
             }
-            apart.sums.add(0, first(samples.columns, centred), samples.values);
+            deviations.sums.add(0, samples.columns, samples.values);
         }
         let inverse = 1.0 / call.n as f32;
-        let (sums, values) = halves(apart.totals, centred);
+        let (sums, values) = halves(deviations.totals, functions);
         let one = at(row_at(self.places, fixed, block), 0)[row % AT_ONCE];
         let mean = |sum: &Eight| only(&one, &sum.map(|sum| sum * inverse));
-        for (out, sum) in row_at_mut(self.functions, self.terms.functions, block).iter_mut().zip(sums.iter()) {
+        for (out, sum) in row_at_mut(self.functions, functions, block).iter_mut().zip(sums.iter()) {
             out[row] = mean(sum);
             lanes::keep_together();
         }
         for (out, (sum, first)) in
-            row_at_mut(self.means, self.values, block).iter_mut().zip(values.iter().zip(apart.firsts.iter()))
+            row_at_mut(self.means, self.values, block).iter_mut().zip(values.iter().zip(deviations.firsts.iter()))
         {
             out[row] = only(&one, &plus(&mean(sum), first));
         }
-        apart.put(row, &inside, inverse, centred);
+        deviations.put(row, &inside, inverse, functions);
     }
 
-    /// The columns of samples of a slot's pixels, by the functions at them, in the lanes of those of the `lines`.
+    /// The columns of four samples of a slot's pixels, by the functions at them: only in lanes where `lines`, a row for
+    /// each sample, are not 0.
     #[inline(always)]
     pub(super) fn put_samples(
         &self,
@@ -482,7 +545,7 @@ impl<'a> Batch<'a> {
 }
 
 /// Of four pixels, sums of products of how far samples are from their pixel's mean.
-struct Apart<'a> {
+struct Deviations<'a> {
     /// Over the samples of one pixel, of their products, and of functions and values themselves; and the first values.
     sums: Sums<'a>,
     totals: &'a mut [Eight],
@@ -493,7 +556,7 @@ struct Apart<'a> {
     squares: &'a mut [Four],
 }
 
-impl<'a> Apart<'a> {
+impl<'a> Deviations<'a> {
     fn new(functions: usize, values: usize, arena: &mut Arena<'a, f32>) -> Self {
         Self {
             sums: Sums::new(1, functions, values, arena),
@@ -548,12 +611,12 @@ impl Sums<'_> {
     /// Adds what four pixels' samples say within their pixels. A pixel's place is the same for all of them, so that
     /// products with it are made here. The fixed columns do not change within a pixel.
     #[inline(always)]
-    fn add_apart(&mut self, part: usize, terms: &Terms, places: &[Four], apart: &Apart<'_>) {
+    fn add_apart(&mut self, part: usize, terms: &Terms, places: &[Four], deviations: &Deviations<'_>) {
         let (fixed, width, columns) = (terms.fixed(), terms.functions, terms.columns());
         let (first, count) = terms.moving;
         let Part { gram, sides, squares } = self.part_mut(part);
         for (i, (factor, function)) in terms.changing(places).enumerate() {
-            let others = row_at(apart.functions, width, function);
+            let others = row_at(deviations.functions, width, function);
             let (plain, products) = halves_mut(from_mut(row_mut(gram, fixed + i), fixed), width.min(i + 1));
             add_products(plain, factor, others);
             // One by one: zipped, the chunks would be counted, and a division may panic.
@@ -564,10 +627,10 @@ impl Sums<'_> {
                 }
             }
         }
-        for (out, square) in squares.iter_mut().zip(apart.squares.iter()) {
+        for (out, square) in squares.iter_mut().zip(deviations.squares.iter()) {
             *out = square.iter().fold(*out, |sum, square| plus(&sum, square));
         }
-        for (products, sides) in rows(apart.values, width).zip(rows_mut(sides, columns)) {
+        for (products, sides) in rows(deviations.values, width).zip(rows_mut(sides, columns)) {
             for (side, (factor, function)) in from_mut(sides, fixed).iter_mut().zip(terms.changing(places)) {
                 if let Some(product) = products.get(function) {
                     *side = plus_four(*side, factor, product);

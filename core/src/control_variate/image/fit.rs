@@ -51,29 +51,29 @@ pub(super) struct Fits<'a> {
 
 /// Numbers that fits take for so many slots.
 pub(super) fn fits_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
-    let (columns, values, count) = (terms.columns(), layout.values(), terms.candidates());
-    let totals = 2 * Sums::len(columns, values) + within_len(terms, values, layout.n);
+    let (columns, values, count) = (terms.of_deviations(), layout.values(), terms.candidates());
+    let totals = Sums::len(columns, values) + Sums::len(terms.of_means(), values) + within_len(terms, values, layout.n);
     let once = totals + Apart::len(terms, values, layout.n) + (values * count + MAX_FIXED + 1 + AT_ONCE) * columns;
     let each = AT_ONCE * count * values;
-    blocks(layout, slots).checked_mul(each)?.checked_add(once)?.checked_mul(LANES)?.checked_add(columns)
+    blocks(layout, slots).checked_mul(each)?.checked_add(once)?.checked_mul(LANES)?.checked_add(terms.columns())
 }
 
 impl<'a> Fits<'a> {
     pub(super) fn new(batch: &Batch<'_>, arena: &mut Arena<'a, f32>) -> Self {
         let (call, terms) = (batch.call, &batch.terms);
-        let (columns, values, count) = (terms.columns(), batch.values, terms.candidates());
+        let (columns, values, count) = (terms.of_deviations(), batch.values, terms.candidates());
         let fits = Self {
             corrections: arena.take_fours(batch.inside.len() * count * values),
             count,
             values,
             within: arena.take_lanes(within_len(terms, values, call.n)),
             system: Sums::new(1, columns, values, arena),
-            between: Sums::new(1, columns, values, arena),
+            between: Sums::new(1, terms.of_means(), values, arena),
             coefficients: arena.take_lanes(values * count * columns),
             pivots: arena.take_lanes(columns),
             units: arena.take_lanes(terms.fixed() * columns),
             solved: arena.take_fours(columns),
-            penalties: arena.take(columns),
+            penalties: arena.take(terms.columns()),
             apart: (terms.slices > 0).then(|| Apart::new(terms, values, call.n, arena)),
         };
         terms.penalties(call.config, call.basis, fits.penalties);
@@ -98,7 +98,15 @@ impl<'a> Fits<'a> {
         }
     }
 
-    /// The same by fits to slices apart.
+    /// The fits to slices apart of some colours' samples, with the corrections of pixels of one sample.
+    #[inline(always)]
+    pub(super) fn fit_slices(&mut self, batch: &Batch<'_>, training: Colours) {
+        let weight = if batch.call.n > 1 { self.weigh(batch, training) } else { [1.0; LANES] };
+        let Some(apart) = &mut self.apart else { return };
+        apart.fit(batch, self.penalties, training, &weight, self.corrections);
+    }
+
+    /// As [`correct_colour`](Self::correct_colour), by fits to slices apart.
     #[inline(always)]
     pub(super) fn correct_slices(&mut self, batch: &Batch<'_>, colour: usize) {
         let Some(several) = self.apart.as_mut().and_then(|apart| apart.several.as_mut()) else { return };
@@ -108,7 +116,9 @@ impl<'a> Fits<'a> {
         }
         let fits = batch.terms.ends.len();
         for (value, (whole, left)) in batch.within.part(colour).squares.iter().zip(rows(&left, fits)).enumerate() {
-            first_mut(row_at_mut(self.within, 1 + self.count, value * COLOURS + colour), 1).fill(*whole);
+            if let Some(out) = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour).first_mut() {
+                *out = *whole;
+            }
             for (fit, left) in left.iter().enumerate() {
                 self.set_within(value, colour, 1 + fit, &batch.joined(left));
             }
@@ -153,9 +163,7 @@ impl<'a> Fits<'a> {
             // One sample less where a pixel's own is left out afterwards.
             (count(&self.system), 1.0)
         } else {
-            self.system.set_total(&batch.within, training);
-            self.between.set_total(&batch.between, training);
-            let weight = self.weight_of_means(call.n as f32, terms.fixed());
+            let weight = self.weigh(batch, training);
             self.system.add_weighted(&self.between, &weight);
             (count(&self.between), 0.0)
         };
@@ -196,13 +204,16 @@ impl<'a> Fits<'a> {
         first(row_at(self.coefficients, terms.columns(), value * self.count + fit), at(&terms.ends, fit))
     }
 
-    /// Several samples in each pixel: weighs what tells pixels apart by how far it is the samples' noise.
+    /// Sums several samples in each pixel, and weighs what tells pixels apart by how far it is the samples' noise.
     ///
     /// With s the variance of samples within pixels and t that of the pixels' integrals about their linear trend, a
     /// texture's say, a pixel's mean of n samples says s / (s + n t) of what as many samples about it say: least
     /// squares for a random effect. Where samples are all alike, nothing is left to fit.
     #[inline(always)]
-    fn weight_of_means(&self, n: f32, fixed: usize) -> Eight {
+    fn weigh(&mut self, batch: &Batch<'_>, training: Colours) -> Eight {
+        let (n, fixed, width) = (batch.call.n as f32, batch.terms.fixed(), batch.terms.of_means());
+        self.system.set_total(&batch.within, training);
+        self.between.set_total(&batch.between, training);
         let between = self.between.part(0);
         let pixels = at(between.gram, 0).map(|count| count / n);
         let mut trend = [NONE; packed_len(MAX_FIXED)];
@@ -210,7 +221,6 @@ impl<'a> Fits<'a> {
         ldlt::factor_each(&mut trend, fixed);
         let mut weight = [1.0; LANES];
         let squares = self.system.part(0).squares.iter().zip(between.squares);
-        let width = self.pivots.len();
         for ((inside, whole), sides) in squares.zip(rows(between.sides, width)) {
             let mut explained = [NONE; MAX_FIXED];
             let explained = first_mut(&mut explained, fixed);

@@ -61,16 +61,17 @@ impl Call<'_> {
             let turn = pass.checked_sub(1);
             let mut place = 0;
             // Groups of one size, which come one after the other, have the same.
-            let mut last = (0, 0);
+            let mut last = (0, (0, 0));
             loop {
                 let mut lanes = [Group::default(); LANES];
-                let (mut used, mut columns) = (0, 0);
+                let (mut used, mut columns) = (0, (0, 0));
                 // Eight, or fewer if the next have other columns.
                 while let Some(group) = groups.by_size(place).filter(|_| used < LANES) {
                     let is_kind = group.has_edges == has_edges && (has_edges || all);
                     if is_kind && turn.is_none_or(|turn| groups.has_limits(&group, turn)) {
                         if last.0 != group.len {
-                            last = (group.len, Terms::new(self, group.len, false).columns());
+                            let terms = Terms::new(self, group.len, false);
+                            last = (group.len, (terms.columns(), terms.all_own()));
                         }
                         if used > 0 && last.1 != columns {
                             break;

@@ -93,7 +93,7 @@ impl Call<'_> {
     }
 
     /// Reads some samples of the pixels of some slots of a block, four in all: functions at them, and their values in
-    /// units. Zero where there is no pixel.
+    /// units. Of one sample in each pixel zero where there is no pixel.
     #[inline(always)]
     pub(super) fn read(
         &self,
@@ -102,7 +102,6 @@ impl Call<'_> {
         samples: Range<usize>,
         rows: &mut Rows<'_>,
     ) {
-        let channels = self.config.channels;
         let Rows { x, h, columns, values } = rows;
         for (run, slot) in slots.enumerate() {
             let pixels = batch.pixels((block, slot));
@@ -115,17 +114,27 @@ impl Call<'_> {
                     }
                 }
             }
-            self.read_values(batch, (block, slot), &pixels, &samples, run, values);
+            self.put_values(batch, (block, slot), &pixels, &samples, run, values);
         }
-        for (value, units) in values.iter_mut().zip(batch.units.iter().take(channels).cycle()) {
-            *value = value.map(|value| units.apply(&value));
-            lanes::keep_together();
-        }
+        batch.put_in_units(values);
         let wide = columns.as_flattened_mut().as_flattened_mut().as_chunks_mut::<AT_ONCE_LANES>().0;
         self.reader.columns(self.basis, x, h, wide);
         if self.n == 1 {
             batch.empty_missing(block, columns.iter_mut().chain(values.iter_mut()));
         }
+    }
+
+    /// Reads the values alone of some samples of a slot's pixels.
+    #[inline(always)]
+    pub(super) fn read_values(
+        &self,
+        batch: &Batch<'_>,
+        slot: (usize, usize),
+        samples: Range<usize>,
+        values: &mut [Four],
+    ) {
+        self.put_values(batch, slot, &batch.pixels(slot), &samples, 0, values);
+        batch.put_in_units(values);
     }
 
     /// The slices of samples that were read.
@@ -141,7 +150,7 @@ impl Call<'_> {
     /// Values of samples of each pixel, as they were given but for factors and what is known of them: in each column
     /// from `row` on.
     #[inline]
-    fn read_values(
+    fn put_values(
         &self,
         batch: &Batch<'_>,
         (block, slot): (usize, usize),

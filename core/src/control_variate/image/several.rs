@@ -22,7 +22,7 @@ pub(super) struct Several<'a> {
     /// are from the first, and of squares of this.
     explained: &'a mut [[Eight; 3]],
     /// How far a sample's values are from the first.
-    apart: &'a mut [Eight],
+    differences: &'a mut [Eight],
     /// For each group, slice, panel and column.
     coefficients: &'a mut [Eight],
 }
@@ -38,13 +38,14 @@ impl<'a> Several<'a> {
     pub(super) fn new(terms: &Terms, values: usize, arena: &mut Arena<'a, f32>) -> Self {
         let panels = panels(values * terms.ends.len());
         let coefficients = arena.take_lanes(LANES * terms.slices * panels * terms.columns());
-        // What a candidate does not use stays 0.
-        coefficients.iter_mut().for_each(|coefficients| *coefficients = NONE);
+        let differences = arena.take_lanes(panels);
+        // What a candidate does not use, and what is none, stays 0.
+        coefficients.iter_mut().chain(differences.iter_mut()).for_each(|numbers| *numbers = NONE);
         Self {
             columns: arena.take_fours(terms.columns()),
             samples: Rows::new(terms.functions, values, arena),
             explained: arena.take_lanes(3 * LANES * panels).as_chunks_mut().0,
-            apart: arena.take_lanes(panels),
+            differences,
             coefficients,
         }
     }
@@ -52,7 +53,7 @@ impl<'a> Several<'a> {
     /// Sets the coefficients, which are given for each value, candidate, slice and column.
     #[inline(always)]
     pub(super) fn set(&mut self, terms: &Terms, values: usize, coefficients: &[Eight]) {
-        let (columns, count, slices) = (terms.columns(), terms.ends.len(), terms.slices);
+        let (columns, count, slices) = (terms.columns(), terms.ends.len().max(1), terms.slices);
         let panels = panels(values * count);
         for which in 0..values * count {
             let end = at(&terms.ends, which % count);
@@ -71,10 +72,11 @@ impl<'a> Several<'a> {
     /// and candidate what the fits leave of the samples about their pixels' means.
     #[inline(always)]
     pub(super) fn correct(&mut self, batch: &Batch<'_>, block: usize, corrections: &mut [Four], left: &mut [Eight]) {
-        let (terms, call, count) = (&batch.terms, batch.call, batch.terms.ends.len());
-        let (columns, panels) = (terms.columns(), panels(batch.values * count));
+        let (terms, call, count) = (&batch.terms, batch.call, batch.terms.ends.len().max(1));
+        let (width, panels) = (terms.columns(), panels(batch.values * count));
         let inverse = 1.0 / call.n as f32;
         for slot in 0..AT_ONCE {
+            let one = at(row_at(batch.places, terms.fixed(), block), 0)[slot];
             self.explained.iter_mut().for_each(|sums| *sums = [NONE; 3]);
             let mut firsts = [NONE; 2 * Config::MAX_CHANNELS];
             for begin in (0..call.n).step_by(AT_ONCE) {
@@ -84,27 +86,27 @@ impl<'a> Several<'a> {
                 if begin == 0 {
                     firsts.iter_mut().zip(&*self.samples.values).for_each(|(first, values)| *first = values[0]);
                 }
-                let picked = call.slices(&self.samples);
-                for (line, slices) in picked.iter().enumerate().take(lines) {
-                    for (lane, explained) in rows_mut(self.explained, panels).enumerate() {
+                for (line, slices) in call.slices(&self.samples).iter().enumerate().take(lines) {
+                    let groups = rows_mut(self.explained, panels).enumerate();
+                    for (lane, explained) in groups.filter(|&(lane, _)| one[lane % LANES] > 0.0) {
                         let values = self.samples.values.iter().zip(&firsts);
-                        for ((value, first), out) in values.zip(rows_mut(self.apart.as_flattened_mut(), count)) {
-                            out.fill(value[line][lane % LANES] - first[lane % LANES]);
+                        for ((value, first), out) in values.zip(rows_mut(self.differences.as_flattened_mut(), count)) {
+                            out.fill(value[line % AT_ONCE][lane % LANES] - first[lane % LANES]);
                         }
                         let slice = lane * terms.slices + slices[lane % LANES] as usize;
-                        let coefficients = row_at(self.coefficients, columns * panels, slice);
-                        for (panel, ([sum, rest, squares], value)) in
-                            explained.iter_mut().zip(self.apart.iter()).enumerate()
+                        let coefficients = rows(row_at(self.coefficients, width * panels, slice), width);
+                        for (([sum, rest, squares], difference), coefficients) in
+                            explained.iter_mut().zip(&*self.differences).zip(coefficients)
                         {
                             let mut fitted = NONE;
-                            for (column, coefficient) in self.columns.iter().zip(row_at(coefficients, columns, panel)) {
-                                let column = [column[line][lane % LANES]; LANES];
+                            for (column, coefficient) in self.columns.iter().zip(coefficients) {
+                                let column = [column[line % AT_ONCE][lane % LANES]; LANES];
                                 fitted = lanes::plus_product(fitted, column, *coefficient);
                                 lanes::keep_together();
                             }
-                            let left = minus(value, &fitted);
-                            (*sum, *rest) = (plus(sum, &fitted), plus(rest, &left));
-                            *squares = lanes::plus_product(*squares, left, left);
+                            let residual = minus(difference, &fitted);
+                            (*sum, *rest) = (plus(sum, &fitted), plus(rest, &residual));
+                            *squares = lanes::plus_product(*squares, residual, residual);
                         }
                     }
                 }

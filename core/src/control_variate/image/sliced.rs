@@ -1,9 +1,9 @@
 //! Sums of samples by slices.
 
-use super::products::{Eight, Four, NONE, Part, Sums};
+use super::products::{AT_ONCE, Eight, Four, NONE, Part, Sums};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
-use crate::matrix::{from, from_mut, halves_mut, packed_len, row_at_mut, row_mut};
+use crate::matrix::{at, from, from_mut, halves_mut, packed_len, row_at_mut, row_mut};
 use crate::rows::{first, rows_mut};
 
 /// Sums of one part's samples by slices. Each lane has its own, one after the other's, so that what a sample adds to
@@ -25,7 +25,7 @@ pub(super) const fn panels(count: usize) -> usize {
 impl<'a> Sliced<'a> {
     /// Lanes of workspace.
     pub(super) fn len(slices: usize, columns: usize, values: usize) -> usize {
-        slices * LANES * Self::each(columns, values) + panels(columns + values)
+        if slices == 0 { 0 } else { slices * LANES * Self::each(columns, values) + panels(columns + values) }
     }
 
     /// Products of one slice and lane.
@@ -36,20 +36,23 @@ impl<'a> Sliced<'a> {
 
     pub(super) fn new(slices: usize, columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Self {
         let all = arena.take_lanes(slices * LANES * Self::each(columns, values));
-        let sample = arena.take_lanes(panels(columns + values));
+        let sample = arena.take_lanes(if slices == 0 { 0 } else { panels(columns + values) });
         all.iter_mut().chain(sample.iter_mut()).for_each(|sum| *sum = NONE);
         Self { all, sample, columns, values }
     }
 
-    /// Adds four rows of samples, each to the sums of its lanes' slices.
+    /// Adds four rows of samples, each to the sums of its lanes' slices, but where the first column, a constant, is 0.
     #[inline(always)]
     pub(super) fn add(&mut self, picked: &Four, columns: &[Four], values: &[Four]) {
         let each = Self::each(self.columns, self.values);
         for (row, picked) in picked.iter().enumerate() {
             for lane in 0..LANES {
+                if at(columns, 0)[row % AT_ONCE][lane] == 0.0 {
+                    continue;
+                }
                 let (line, own) = halves_mut(self.sample.as_flattened_mut(), self.columns);
-                line.iter_mut().zip(columns).for_each(|(out, column)| *out = column[row][lane]);
-                own.iter_mut().zip(values).for_each(|(out, value)| *out = value[row][lane]);
+                line.iter_mut().zip(columns).for_each(|(out, column)| *out = column[row % AT_ONCE][lane]);
+                own.iter_mut().zip(values).for_each(|(out, value)| *out = value[row % AT_ONCE][lane]);
                 let mut sums = row_at_mut(self.all, each, picked[lane] as usize * LANES + lane);
                 let mut numbers = first(self.sample.as_flattened(), self.columns + self.values);
                 for eight in self.sample.iter().take(panels(self.columns)) {

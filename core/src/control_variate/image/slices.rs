@@ -5,8 +5,10 @@
 //! border with it, and what is left of that is a system of the shared columns.
 //!
 //! Indicators are not centred here. The constant, which has no penalty, and the trends, which have next to none, take
-//! the difference. Of several samples in each pixel, each counts as much as one of another pixel would: less the
-//! pixel's mean, as other fits count them, they would be of several slices at once.
+//! the difference. Of several samples in each pixel, less the pixel's mean, columns would be of several slices at once.
+//! So they stay as they are, and values alone are less a part of the pixel's mean: all of it where pixels' means say
+//! nothing ([`Fits::weigh`](super::fit::Fits)). For independent samples coefficients are then too small by a factor that
+//! is known.
 
 use super::batch::{Batch, MAX_FIXED};
 use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, minus, only, plus, product};
@@ -80,7 +82,7 @@ impl<'a> Apart<'a> {
         if slices == 0 {
             return 0;
         }
-        let each = Sums::len(width, values) + order * terms.all_own();
+        let each = Sums::len(width, terms.of_slices(values, n)) + order * terms.all_own();
         let coefficients = values * terms.ends.len() * (terms.fixed() + slices * width);
         let border = packed_len(width) + (values + terms.fixed()) * width;
         let several = if n > 1 { Several::len(terms, values) } else { 0 };
@@ -93,7 +95,7 @@ impl<'a> Apart<'a> {
         Self {
             width,
             own: 0,
-            totals: Sums::new(slices, width, values, arena),
+            totals: Sums::new(slices, width, terms.of_slices(values, n), arena),
             blocks: arena.take_lanes(slices * order * terms.all_own()),
             border: arena.take_lanes(packed_len(width)),
             sides: arena.take_lanes((values + terms.fixed()) * width),
@@ -106,12 +108,21 @@ impl<'a> Apart<'a> {
         }
     }
 
-    /// Makes the fits to the colours `training`, and corrects the pixels of others, or of one sample those, by fits to
-    /// the other pixels.
+    /// Makes the fits to the colours `training`. Pixels of one sample are corrected by those to the other pixels.
     #[inline(always)]
-    pub(super) fn fit(&mut self, batch: &Batch<'_>, penalties: &[f32], training: Colours, corrections: &mut [Four]) {
+    pub(super) fn fit(
+        &mut self,
+        batch: &Batch<'_>,
+        penalties: &[f32],
+        training: Colours,
+        weight_of_means: &Eight,
+        corrections: &mut [Four],
+    ) {
         let terms = &batch.terms;
-        self.totals.set_total(&batch.between, training);
+        self.totals.set_total(&batch.sliced, training);
+        if batch.call.n > 1 {
+            self.subtract_means(batch, weight_of_means);
+        }
         let mut begin = 0;
         for fit in 0..terms.ends.len() {
             // The last of those with as many own columns has all the shared ones that these have.
@@ -132,6 +143,22 @@ impl<'a> Apart<'a> {
         }
         if let Some(several) = &mut self.several {
             several.set(terms, batch.values, self.coefficients);
+        }
+    }
+
+    /// Takes a part of the pixels' means from the values that fits are made to.
+    #[inline(always)]
+    fn subtract_means(&mut self, batch: &Batch<'_>, weight: &Eight) {
+        let part = weight.map(|weight| 1.0 - Real::sqrt(weight));
+        // Stratified samples hardly depend on their pixel's mean.
+        let own = if batch.call.config.stratified { 0.0 } else { 1.0 / batch.call.n as f32 };
+        let factor = part.map(|part| 1.0 / (1.0 - part * own));
+        for slice in 0..batch.terms.slices {
+            let (values, means) = halves_mut(self.totals.part_mut(slice).sides, batch.values * batch.terms.columns());
+            for (value, mean) in values.iter_mut().zip(&*means) {
+                *value = product(&lanes::minus_product(*value, part, *mean), &factor);
+                lanes::keep_together();
+            }
         }
     }
 
@@ -161,7 +188,7 @@ impl<'a> Apart<'a> {
                 *out = terms.ridge(j, *penalty, &scale, &squares(&self.totals, j), &count);
             }
         }
-        for (i, side) in rows_mut(self.sides, width).enumerate() {
+        for (i, side) in rows_mut(self.sides, width).take(values + units).enumerate() {
             side.iter_mut().for_each(|out| *out = NONE);
             if let Some(out) = i.checked_sub(values).and_then(|unit| side.get_mut(unit)) {
                 *out = [1.0; LANES];
@@ -213,7 +240,7 @@ impl<'a> Apart<'a> {
             }
         }
         ldlt::factor_each(self.border, width);
-        for side in rows_mut(self.sides, width) {
+        for side in rows_mut(self.sides, width).take(values + units) {
             ldlt::forward_each::<f32, 1>(self.border, 0, ldlt::one_each_mut(side));
             for (j, side) in side.iter_mut().enumerate() {
                 *side = product(side, &at(self.border, packed_len(j) + j));

@@ -7,26 +7,29 @@ use super::choice::{Choices, Shares, Spreads};
 use super::edges::Edges;
 use super::fit::Fits;
 use super::groups::Groups;
-use super::products::{COLOURS, Colours, Eight, Four};
-use super::slices::Apart;
+use super::products::{COLOURS, Colours, Eight};
 use super::sums::Band;
 use crate::arena::Arena;
 use crate::processor::{Processor, Step};
 
 /// Corrects every pixel of the colours `taken`, of which fits have seen no sample, by those to the others of them.
 pub(super) fn correct<P: Processor>(fits: &mut Fits<'_>, batch: &Batch<'_>, taken: Colours) {
-    let several = batch.call.n > 1;
-    for colour in (0..if several { COLOURS } else { 1 }).filter(|&colour| !several || taken.has(colour)) {
-        let training = if several { taken.without(colour) } else { taken };
-        match &mut fits.apart {
-            Some(apart) => fit_slices::<P>(apart, batch, fits.penalties, training, fits.corrections),
-            None => factor::<P>(fits, batch, training),
+    let is_apart = fits.apart.is_some();
+    if batch.call.n == 1 {
+        if is_apart {
+            return fit_slices::<P>(fits, batch, taken);
         }
-        match (several, fits.apart.is_some()) {
-            (true, true) => correct_slices::<P>(fits, batch, colour),
-            (true, false) => correct_colour::<P>(fits, batch, colour),
-            (false, true) => {}
-            (false, false) => leave_own::<P>(fits, batch, training),
+        factor::<P>(fits, batch, taken);
+        return leave_own::<P>(fits, batch, taken);
+    }
+    for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
+        let training = taken.without(colour);
+        if is_apart {
+            fit_slices::<P>(fits, batch, training);
+            correct_slices::<P>(fits, batch, colour);
+        } else {
+            factor::<P>(fits, batch, training);
+            correct_colour::<P>(fits, batch, colour);
         }
     }
 }
@@ -60,10 +63,7 @@ steps! {
     factor = Fits::factor(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, training: Colours) -> ();
     leave_own = Fits::leave_own(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, taken: Colours) -> ();
     correct_colour = Fits::correct_colour(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, colour: usize) -> ();
-    fit_slices = Apart::fit(
-        apart: &'s mut Apart<'a>, batch: &'s Batch<'s>, penalties: &'s [f32], training: Colours,
-        corrections: &'s mut [Four],
-    ) -> ();
+    fit_slices = Fits::fit_slices(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, training: Colours) -> ();
     correct_slices = Fits::correct_slices(fits: &'s mut Fits<'a>, batch: &'s Batch<'s>, colour: usize) -> ();
     load_edges = Edges::load(edges: &'s mut Edges<'a>, batch: &'s Batch<'s>) -> ();
     correct_edges = Edges::correct(

@@ -115,10 +115,22 @@ impl Terms {
         self.fixed() + self.functions + self.axes * self.moving.1
     }
 
-    /// Functions whose means over a pixel's samples fits see, and what is about them: none where slices are apart.
+    /// Columns of sums of pixels' means: where slices are apart, as many as trends need.
     #[inline]
-    pub(super) fn centred(&self) -> usize {
-        if self.slices > 0 { 0 } else { self.functions }
+    pub(super) fn of_means(&self) -> usize {
+        if self.slices > 0 { self.fixed() } else { self.columns() }
+    }
+
+    /// Columns of sums of what is within pixels.
+    #[inline]
+    pub(super) fn of_deviations(&self) -> usize {
+        if self.slices > 0 { 0 } else { self.columns() }
+    }
+
+    /// Values of sums by slices, of `n` samples of each pixel: of several also the pixels' means.
+    #[inline]
+    pub(super) fn of_slices(&self, values: usize, n: usize) -> usize {
+        if self.slices == 0 { 0 } else { values * n.min(2) }
     }
 
     /// A slice's own columns: its indicator, its copies, and its indicator times each axis.
