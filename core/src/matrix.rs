@@ -1,4 +1,4 @@
-//! Checked views of matrices, over memory that somebody else owns.
+//! Views of matrices, over memory that somebody else owns and measured.
 //!
 //! What lies outside reads as zero or as an empty row, so no index of a formula over views can be out of bounds.
 //!

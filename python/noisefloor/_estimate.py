@@ -178,8 +178,8 @@ def image_estimate(
     if (known is None) != (known_integrals is None):
         raise ValueError("known and known_integrals belong together: one of them is None")
 
-    def rows(wanted):
-        """The status, and what the library writes for rows of pixels."""
+    def rows(wanted, held=(u, f, kept)):
+        """The status, and what the library writes for rows of pixels. A thread that is interrupted holds the arrays."""
         part = _c.Image.from_buffer_copy(image)
         part.wanted = _c.Rectangle(0, wanted.start, image.width, len(wanted))
         workspace = _c.workspace(_c.cv_image_workspace_size(_c.address(config), _c.address(part), _c.address(samples)))
@@ -194,7 +194,7 @@ def image_estimate(
         )
         return status, out
 
-    # Whole windows, so that few are fitted to twice.
+    # Whole windows: those at the borders of rows are fitted to twice.
     threads = _arrays.integer("threads", threads, 1, 1024)
     each = window * -(-image.height // (window * threads))
     wanted = [range(y, min(y + each, image.height)) for y in range(0, image.height, each)]

@@ -141,6 +141,8 @@ static void images(void)
         nf_cv_samples samples = samples_of(u, f, n);
         memory work;
         size_t i;
+        if (below(3) == 0) /* the second number picks one of many slices */
+            config.slices = 40;
         memset(&image, 0, sizeof image);
         image.width = image.height = 16;
         config.precision = below(2) ? NF_PRECISION_F32 : NF_PRECISION_F64;

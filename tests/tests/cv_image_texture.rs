@@ -4,7 +4,7 @@
 //! only `surfaces` or `factors` tell texture from noise.
 
 use crate::cv_support::points;
-use noisefloor::control_variate::{Config, Image, Samples, image_workspace_len};
+use noisefloor::control_variate::{Config, Estimator, Image, Samples, image_workspace_len};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::image;
 
@@ -44,15 +44,26 @@ struct Score {
     largest: f64,
 }
 
-fn score(texture: &[f64], of: &Image<'_>, n: usize, (sigma, deviate): (f64, fn(&[f32]) -> f64)) -> Score {
-    let config = Config::new(2, 3, 1);
+/// Fits of two numbers, and those of two and a third that picks one of many slices.
+fn configs() -> [Config; 2] {
+    [Config::new(2, 3, 1), Config { slices: 16, ..Config::new(3, 2, 1) }]
+}
+
+fn score(
+    config: &Config,
+    texture: &[f64],
+    of: &Image<'_>,
+    n: usize,
+    (sigma, deviate): (f64, fn(&[f32]) -> f64),
+) -> Score {
+    let dims = config.dims;
     let mut score = Score::default();
     let mut rng = SplitMix64::new(11);
     for _ in 0..REPETITIONS {
-        let u = points(PIXELS * n, 2, &mut rng);
+        let u = points(PIXELS * n, dims, &mut rng);
         let f: Vec<f32> =
-            u.chunks(2).enumerate().map(|(i, u)| (texture[i / n] * (1.0 + sigma * deviate(u))) as f32).collect();
-        let estimates = image(&config, of, Samples::new(&u, &f)).unwrap();
+            u.chunks(dims).enumerate().map(|(i, u)| (texture[i / n] * (1.0 + sigma * deviate(u))) as f32).collect();
+        let estimates = image(config, of, Samples::new(&u, &f)).unwrap();
         for ((estimate, own), truth) in estimates.iter().zip(f.chunks(n)).zip(texture) {
             let mean = own.iter().map(|&f| f64::from(f)).sum::<f64>() / n as f64;
             let variance =
@@ -76,13 +87,14 @@ fn ratio(score: &Score) -> f64 {
 /// The root of the squared error over the plain mean's, and how often +- 2 `std_error` hold the truth.
 #[test]
 fn no_noise_from_texture() {
-    for (n, most) in [(2, 1.10), (4, 1.05), (16, 1.05)] {
+    let bounds = [(2, 1.10), (4, 1.05), (16, 1.05)];
+    for ((n, most), config) in bounds.into_iter().flat_map(|bound| configs().map(|config| (bound, config))) {
         let (mut worst, mut least) = (0.0_f64, 1.0_f64);
         for (name, texture) in TEXTURES {
             let texture = values(texture);
             for deviate in DEVIATES {
                 for sigma in SIGMAS {
-                    let score = score(&texture, &Image::new(SIDE, SIDE), n, (sigma, deviate));
+                    let score = score(&config, &texture, &Image::new(SIDE, SIDE), n, (sigma, deviate));
                     let [own, plain] = score.covered.map(|count| count as f64 / (REPETITIONS * PIXELS) as f64);
                     let ratio = ratio(&score);
                     assert!(ratio < most, "{name} {sigma}: {ratio}");
@@ -92,7 +104,23 @@ fn no_noise_from_texture() {
                 }
             }
         }
-        println!("{n} samples: worst {worst:.3}, coverage {least:+.3} of the mean's at the least");
+        println!(
+            "{n} samples, {} slices: worst {worst:.3}, coverage {least:+.3} of the mean's at the least",
+            config.slices
+        );
+    }
+}
+
+/// What slices explain is kept beside a texture ten times as large as it.
+#[test]
+fn slices_beside_a_texture() {
+    let texture = values(TEXTURES[0].1);
+    let of_slices: fn(&[f32]) -> f64 = |u| if ((16.0 * u[2]) as u32).is_multiple_of(3) { 1.4 } else { -0.6363 };
+    for estimator in [Estimator::Robust, Estimator::LeaveOneOut] {
+        let config = Config { estimator, ..configs()[1] };
+        let ratio = ratio(&score(&config, &texture, &Image::new(SIDE, SIDE), 4, (0.1, of_slices)));
+        println!("{ratio:.3}");
+        assert!(ratio < 0.7, "{ratio}");
     }
 }
 
@@ -101,9 +129,13 @@ fn no_noise_from_texture() {
 fn equal_samples_stay() {
     for (name, texture) in TEXTURES {
         let texture = values(texture);
-        for n in [2, 4] {
-            let score = score(&texture, &Image::new(SIDE, SIDE), n, (0.0, DEVIATES[0]));
-            assert_eq!(score.largest, 0.0, "{name}");
+        let estimators = [Estimator::Robust, Estimator::LeaveOneOut];
+        for (config, estimator) in configs().into_iter().flat_map(|c| estimators.map(|estimator| (c, estimator))) {
+            let config = Config { estimator, ..config };
+            for n in [2, 4, 7] {
+                let score = score(&config, &texture, &Image::new(SIDE, SIDE), n, (0.0, DEVIATES[0]));
+                assert_eq!(score.largest, 0.0, "{name}");
+            }
         }
     }
 }
@@ -122,7 +154,7 @@ fn one_sample_needs_to_be_told() {
         for deviate in DEVIATES {
             for sigma in SIGMAS {
                 let base = Image::new(SIDE, SIDE);
-                let of = |image: &Image<'_>| ratio(&score(&texture, image, 1, (sigma, deviate)));
+                let of = |image: &Image<'_>| ratio(&score(&configs()[0], &texture, image, 1, (sigma, deviate)));
                 by_factors = by_factors.max(of(&Image { factors: &factors, surfaces: &black, ..base }));
                 if has_levels {
                     by_surfaces = by_surfaces.max(of(&Image { surfaces: &surfaces, ..base }));

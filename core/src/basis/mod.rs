@@ -170,7 +170,7 @@ impl Basis {
     pub(crate) fn set(&mut self, family: Family, shape: Shape) {
         (self.family, self.shape) = (family, shape);
         terms::total_degree(shape.continuous, shape.order, shape.indicators(), &mut self.terms);
-        if family == Family::Gaussian {
+        if family == Family::Gaussian && shape.shared > 0 {
             self.gaussians = Some(Gaussians::new(shape.continuous, shape.shared));
         }
     }

@@ -57,8 +57,8 @@ impl Term {
     }
 }
 
-/// Adds to no `terms` every multi-index of degree 1 to `order` over `dims` coordinates, degree by degree; None if there
-/// is no room for more. Columns `dims..dims + gap` are left free for the slices' indicators.
+/// Adds to `terms`, which are empty, every multi-index of degree 1 to `order` over `dims` coordinates, degree by
+/// degree; None if there is no room for more. Columns `dims..dims + gap` are left free for the slices' indicators.
 pub(crate) fn total_degree(dims: usize, order: usize, gap: usize, terms: &mut Vec<Term, MAX_TERMS>) -> Option<()> {
     let column = |index: usize| u8::try_from(if index < dims { index } else { index + gap }).ok();
     // The columns of the one-dimensional functions, by coordinate and degree.

@@ -101,7 +101,7 @@ impl<R: Real> Progress<R> {
         if samples < self.next_fit.max(2) {
             return;
         }
-        // `Centred::solve` takes strengths per sample.
+        // `Normal::solve` takes strengths per sample.
         let strengths = STRENGTHS.map(|own| R::from_f64(ridge::strength::<R>(config.ridge, own / samples as f64)));
         let sums = layout.group(sums, 0);
         // The buffer was measured for this.

@@ -46,9 +46,9 @@ pub(crate) fn estimate<R: Real>(
     for index in 0..config.fold_count().get() {
         let fold = Fold::new(index, config.fold_count(), reader.len());
         let mut arena = arena.scratch();
-        let [held_out, train] = [(Subset::Fold(fold), false), (Subset::Complement(fold), true)]
-            .map(|(subset, centre)| Design::load(reader, basis, whole.columns, subset, centre, &mut arena));
-        let Some(held_out) = held_out else { continue };
+        let mut load = |subset, centre| Design::load(reader, basis, whole.columns, subset, centre, &mut arena);
+        let Some(held_out) = load(Subset::Fold(fold), false) else { continue };
+        let train = load(Subset::Complement(fold), true);
         coefficients.fill(R::ZERO);
         let mut inflation = PerChannel::all(R::ONE);
         if let Some(train) = train.filter(|train| train.n > 1) {

@@ -89,7 +89,7 @@ impl<'a> Tile<'a> {
         pixel.wrapping_mul(spp as usize).wrapping_add(sample as usize).wrapping_mul(dims as usize)
     }
 
-    /// N consecutive stored integers, of as many bytes; `None` beyond the payload.
+    /// N consecutive stored integers, of `BYTES` bytes each; `None` beyond the payload.
     #[inline(always)]
     fn stored<const BYTES: usize, const N: usize>(&self, place: usize) -> Option<&[[u8; BYTES]; N]> {
         let (values, _) = self.payload.get(place.wrapping_mul(BYTES)..)?.as_chunks();

@@ -122,7 +122,7 @@ def kind():
                     more = dict(zip(("known", "known_integrals"), a))
             found = image_estimate(
                 u, f, surfaces=surfaces(middle).reshape(height, width), order=self.order, slices=lights,
-                stride=self.stride, stratified=True, channels=True, threads=dr.thread_count(), **more,
+                stride=self.stride, stratified=True, channels=True, threads=max(dr.thread_count(), 1), **more,
             )  # fmt: skip
             return mi.TensorXf(found.mean)
 

@@ -1,6 +1,7 @@
 //! What fits to other pixels add to each pixel's mean.
 //!
-//! One factorisation A = L D L' serves every candidate, as each is a prefix of the columns and so of L.
+//! One factorisation A = L D L' serves every candidate, as each is a prefix of the columns and so of L; `slices`
+//! are apart.
 
 use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED, blocks};

@@ -4,7 +4,7 @@
 //! than one sample in each pixel, and keeps whatever stratification the samples have, within a pixel and across pixels,
 //! as far as b changes slowly. One sample is left out of its fit in closed form. With several in each pixel the pixels
 //! have four colours, as 2 x 2 squares do, and each colour is corrected by a fit to the other three, in which a
-//! pixel's mean counts as far as noise, and not texture, sets it apart (`Fits::weight_of_means`).
+//! pixel's mean counts as far as noise, and not texture, sets it apart (`Fits::weigh`).
 //!
 //! Three estimators decide which b:
 //!

@@ -7,8 +7,8 @@
 //! Indicators are not centred here. The constant, which has no penalty, and the trends, which have next to none, take
 //! the difference. Of several samples in each pixel, less the pixel's mean, columns would be of several slices at once.
 //! So they stay as they are, and values alone are less a part of the pixel's mean: all of it where pixels' means say
-//! nothing ([`Fits::weigh`](super::fit::Fits)). For independent samples coefficients are then too small by a factor that
-//! is known.
+//! nothing ([`Fits::weigh`](super::fit::Fits)). For independent samples coefficients are then too small by a
+//! factor that is known.
 
 use super::batch::{Batch, MAX_FIXED};
 use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, minus, only, plus, product};

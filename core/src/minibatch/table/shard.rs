@@ -46,6 +46,7 @@ impl Shard {
     /// Errors: [`Error::NoSamples`] if nothing can be drawn.
     fn ways(&self, all: &Shard, uniform_fraction: f64) -> Result<(f64, f64), Error> {
         let (tree, uniform) = parts(all.importance > 0.0, uniform_fraction)?;
+        // Without importance `tree` is 0.
         let part = (self.importance / all.importance.or_one(), self.items as f64 / all.items as f64);
         Ok((tree * part.0, uniform * part.1))
     }
