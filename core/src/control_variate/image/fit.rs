@@ -18,6 +18,8 @@ use crate::rows::{first, part, rows, rows_mut};
 
 /// What a fit leaves of a sum of squares is at least this of it.
 const ROUNDING: f32 = 1e-5;
+/// The least weight of pixels' means but 0.
+const FAINT: f32 = 1e-24;
 
 /// Lanes of [`Fits::within`].
 fn within_len(terms: &Terms, values: usize, n: usize) -> usize {
@@ -247,7 +249,8 @@ impl<'a> Fits<'a> {
                 weight[l] = if largest[l] > 0.0 { Real::min(share, weight[l]) } else { weight[l] };
             }
         }
-        weight
+        // As good as nothing, of which there is no inverse.
+        lanes::each(&weight, |weight| if weight < FAINT { 0.0 } else { weight })
     }
 
     /// What the fit leaves of the samples of a colour that it has not seen, about their pixels' means.

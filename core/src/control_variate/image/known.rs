@@ -110,15 +110,15 @@ impl Batch<'_> {
                 let integral = get(self.integrals, slot);
                 let unit = lanes::zip(&integral, &largest, |integral, largest| Real::max(integral, largest * LEAST));
                 let unit = lanes::divisor(&unit);
-                let over = |value: &Eight| lanes::zip(value, &unit, |value, unit| black_box(value / unit));
-                let apart = minus(&known, &integral);
-                let values = [over(&mean), over(&known), over(&apart)];
+                let values = [mean, known, minus(&known, &integral)];
                 let mut counts = inside;
                 for l in 0..LANES {
-                    let is_usual = values.iter().all(|value| Real::abs(value[l]) < MOST);
+                    // Not the quotients, which may overflow.
+                    let is_usual = values.iter().all(|value| Real::abs(value[l]) * (1.0 / MOST) < unit[l]);
                     counts[l] = if integral[l] > 0.0 && is_usual { inside[l] } else { 0.0 };
                 }
-                *own = products(&values.map(|value| only(&counts, &value)));
+                let over = |value: &Eight| lanes::zip(value, &unit, |value, unit| black_box(value / unit));
+                *own = products(&values.map(|value| over(&only(&counts, &value))));
                 (*before, all) = (all, both(&all, own));
             }
             // Sums of all pixels but one, without a difference: that would hold digits of the one.
