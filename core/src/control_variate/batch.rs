@@ -94,7 +94,7 @@ pub fn estimate_inlined<R: Real>(
     let outcome = match plan.method {
         _ if design.n == 1 => Outcome::default(),
         Method::Robust | Method::LeaveOneOut | Method::LeastSquares => {
-            fitter::fit(&design, config, &basis, &plan, None, &mut arena).outcome(&design)
+            fitter::fit(&design, config, &basis, &plan, None, &mut arena).outcome()
         }
         Method::KFold => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
         Method::Descent => {

@@ -21,6 +21,9 @@ use core::array;
 pub(crate) struct Blend<R> {
     fits: [Fit<R>; MAX_FITS],
     mixture: Mixture<R, MAX_FITS>,
+    /// Samples that they are to, and [`plain_press`] of these.
+    n: R,
+    plain: PerChannel<R>,
     /// Whether residuals tell the error: as many terms as samples leave least squares none.
     is_told: bool,
 }
@@ -86,9 +89,9 @@ pub(crate) fn fit<'a, R: Real>(
             System::Dual(dual) => dual.fit(design, penalty, leave_one_out, kept, arena.scratch()),
         };
     }
-    let plain = plain_press(design);
+    let (n, plain) = (R::from_usize(design.n), plain_press(design));
     let mixture = if is_mixed {
-        mix(R::from_usize(design.n), plain, plan.method, &fits, strengths.len())
+        mix(n, plain, plan.method, &fits, strengths.len())
     } else {
         let best = if strengths.len() > 1 { best_of(&fits, &plain) } else { 0 };
         let weights = array::from_fn(|fit| PerChannel::all(if fit == best { R::ONE } else { R::ZERO }));
@@ -103,7 +106,7 @@ pub(crate) fn fit<'a, R: Real>(
             }
         }
     }
-    Blend { fits, mixture, is_told }
+    Blend { fits, mixture, n, plain, is_told }
 }
 
 /// The plain mean of `n` samples and the first `used` fits, weighed. Fits that are to correct other samples are trusted
@@ -153,27 +156,26 @@ fn best_of<R: Real>(fits: &[Fit<R>; MAX_FITS], plain: &PerChannel<R>) -> usize {
 
 impl<R: Real> Blend<R> {
     /// What is added to the plain mean, and the variance of that.
-    pub(crate) fn outcome(&self, design: &Design<'_, R>) -> Outcome<R> {
-        let n = R::from_usize(design.n);
-        let factor = result::press_factor(n);
-        let own = |fit: Fit<R>| fit.influence * factor * trust::few_left(fit.freedom, n);
-        let (correction, variance) = self.mixture.estimate(plain_press(design) * factor, self.fits.map(own));
+    pub(crate) fn outcome(&self) -> Outcome<R> {
+        let factor = result::press_factor(self.n);
+        let own = |fit: Fit<R>| fit.influence * factor * trust::few_left(fit.freedom, self.n);
+        let (correction, variance) = self.mixture.estimate(self.plain * factor, self.fits.map(own));
         Outcome { correction, variance: self.is_told.then_some(variance) }
     }
 
     /// What the error of the mixture's coefficients adds to the variance of an estimate that is corrected by them, as a
-    /// factor, of fits to `n` samples.
-    pub(crate) fn inflation(&self, n: R) -> PerChannel<R> {
+    /// factor.
+    pub(crate) fn inflation(&self) -> PerChannel<R> {
         let fits = self.fits.iter().zip(&self.mixture.weights);
         fits.fold(self.mixture.plain_weight, |sum, (fit, &weights)| {
-            sum + weights * Centre::new(fit.eccentricity, fit.freedom, n).inflation
+            sum + weights * Centre::new(fit.eccentricity, fit.freedom, self.n).inflation
         })
     }
 }
 
 /// The sum of squared leave-one-out residuals of the plain mean.
 #[inline(always)]
-pub(crate) fn plain_press<R: Real>(design: &Design<'_, R>) -> PerChannel<R> {
+fn plain_press<R: Real>(design: &Design<'_, R>) -> PerChannel<R> {
     let n = R::from_usize(design.n);
     // f_i minus the mean of the others is n / (n - 1) times f_i minus the mean.
     let factor = if design.n > 1 { n / (n - R::ONE) } else { R::ZERO };

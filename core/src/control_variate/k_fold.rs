@@ -54,7 +54,7 @@ pub(crate) fn estimate<R: Real>(
         if let Some(train) = train.filter(|train| train.n > 1) {
             let plan = Plan::new(config, basis.columns(), train.n)?;
             let blend = fitter::fit(&train, config, basis, &plan, Some(coefficients), &mut arena);
-            inflation = blend.inflation(R::from_usize(train.n));
+            inflation = blend.inflation();
             // Everything meets in the units of all samples, which are the largest.
             let units = train.units.iter().zip(&whole.units);
             for (coefficients, (from, to)) in rows_mut(coefficients, whole.columns).zip(units) {

@@ -15,7 +15,7 @@ use super::sliced::Sliced;
 use super::terms::{MAX_AXES, Terms};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, copy, from, from_mut, halves_mut, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{at, copy, first_mut, from, from_mut, halves_mut, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
 use crate::rows::{first, halves, rows, rows_mut};
 use core::array::from_fn;
@@ -375,14 +375,16 @@ impl<'a> Batch<'a> {
                         }
                     }
                 }
-                self.put_means(block, &mut pixels);
+                // Of several samples, slices have sums of their own, and pixels' means those of trends alone.
+                let needed = if call.n > 1 { self.terms.of_means() } else { columns };
+                let (columns, means) = (first_mut(pixels.columns, needed), first_mut(pixels.values, values));
+                self.put_means(block, columns, means);
                 if slices > 0 && call.n == 1 {
                     let picked = call.slices(&samples);
-                    sliced.add(&picked, pixels.columns, pixels.values);
+                    sliced.add(&picked, columns, means);
                     row_at_mut(self.slices, 1, block).fill(picked);
                 } else {
-                    let columns = first(pixels.columns, self.terms.of_means());
-                    self.between.add(part, columns, first(pixels.values, values));
+                    self.between.add(part, columns, means);
                 }
                 if call.n > 1 && slices == 0 {
                     let inside = at(self.inside, block);
@@ -524,18 +526,18 @@ impl<'a> Batch<'a> {
 
     /// The columns and values of a block's pixels that fits are made to.
     #[inline(always)]
-    fn put_means(&self, block: usize, pixels: &mut Rows<'_>) {
+    fn put_means(&self, block: usize, columns: &mut [Four], values: &mut [Four]) {
         let (terms, n) = (&self.terms, self.call.n);
         let places = row_at(self.places, terms.fixed(), block);
-        let (fixed, rest) = halves_mut(pixels.columns, terms.fixed());
+        let (fixed, rest) = halves_mut(columns, terms.fixed());
         let (functions, products) = halves_mut(rest, terms.functions);
         copy(fixed, places);
         copy(functions, row_at(self.functions, terms.functions, block));
-        copy(pixels.values, row_at(self.means, self.values, block));
+        copy(values, row_at(self.means, self.values, block));
         let inside = at(self.inside, block);
         if self.leaves_out || n > 1 {
             let root = Real::sqrt(n as f32);
-            for four in fixed.iter_mut().chain(&mut *functions).chain(pixels.values.iter_mut()) {
+            for four in fixed.iter_mut().chain(&mut *functions).chain(values.iter_mut()) {
                 *four = zip_four(&inside, four, |inside, value| only(inside, &value.map(|value| value * root)));
                 lanes::keep_together();
             }

@@ -119,9 +119,7 @@ impl<'a> Fits<'a> {
         }
         let fits = batch.terms.ends.len();
         for (value, (whole, left)) in batch.within.part(colour).squares.iter().zip(rows(&left, fits)).enumerate() {
-            if let Some(out) = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour).first_mut() {
-                *out = *whole;
-            }
+            self.set_whole(value, colour, whole);
             for (fit, left) in left.iter().enumerate() {
                 self.set_within(value, colour, 1 + fit, &batch.joined(left));
             }
@@ -143,6 +141,14 @@ impl<'a> Fits<'a> {
     #[inline]
     pub(super) fn corrections_mut(&mut self, block: usize, value: usize) -> &mut [Four] {
         row_at_mut(self.corrections, self.count, block * self.values + value)
+    }
+
+    /// Sets what there is of the samples of a colour, without a fit.
+    #[inline]
+    fn set_whole(&mut self, value: usize, colour: usize, whole: &Eight) {
+        if let Some(out) = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour).first_mut() {
+            *out = *whole;
+        }
     }
 
     /// Sets what a fit leaves of the samples of a colour. A difference of sums has no more digits than they.
@@ -260,9 +266,7 @@ impl<'a> Fits<'a> {
         let (width, fixed) = (terms.columns(), terms.fixed());
         let Part { gram, sides, squares } = batch.within.part(colour);
         for (value, (whole, sides)) in squares.iter().zip(rows(sides, width)).enumerate() {
-            if let Some(out) = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour).first_mut() {
-                *out = *whole;
-            }
+            self.set_whole(value, colour, whole);
             for fit in 0..terms.ends.len() {
                 let mut left = *whole;
                 let coefficients = self.coefficients(terms, value, fit);

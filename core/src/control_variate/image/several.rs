@@ -73,7 +73,7 @@ impl<'a> Several<'a> {
     #[inline(always)]
     pub(super) fn correct(&mut self, batch: &Batch<'_>, block: usize, corrections: &mut [Four], left: &mut [Eight]) {
         let (terms, call, count) = (&batch.terms, batch.call, batch.terms.ends.len().max(1));
-        let (width, panels) = (terms.columns(), panels(batch.values * count));
+        let panels = panels(batch.values * count);
         let inverse = 1.0 / call.n as f32;
         for slot in 0..AT_ONCE {
             let one = at(row_at(batch.places, terms.fixed(), block), 0)[slot];
@@ -87,27 +87,9 @@ impl<'a> Several<'a> {
                     firsts.iter_mut().zip(&*self.samples.values).for_each(|(first, values)| *first = values[0]);
                 }
                 for (line, slices) in call.slices(&self.samples).iter().enumerate().take(lines) {
-                    let groups = rows_mut(self.explained, panels).enumerate();
-                    for (lane, explained) in groups.filter(|&(lane, _)| one[lane % LANES] > 0.0) {
-                        let values = self.samples.values.iter().zip(&firsts);
-                        for ((value, first), out) in values.zip(rows_mut(self.differences.as_flattened_mut(), count)) {
-                            out.fill(value[line % AT_ONCE][lane % LANES] - first[lane % LANES]);
-                        }
-                        let slice = lane * terms.slices + slices[lane % LANES] as usize;
-                        let coefficients = rows(row_at(self.coefficients, width * panels, slice), width);
-                        for (([sum, rest, squares], difference), coefficients) in
-                            explained.iter_mut().zip(&*self.differences).zip(coefficients)
-                        {
-                            let mut fitted = NONE;
-                            for (column, coefficient) in self.columns.iter().zip(coefficients) {
-                                let column = [column[line % AT_ONCE][lane % LANES]; LANES];
-                                fitted = lanes::plus_product(fitted, column, *coefficient);
-                                lanes::keep_together();
-                            }
-                            let residual = minus(difference, &fitted);
-                            (*sum, *rest) = (plus(sum, &fitted), plus(rest, &residual));
-                            *squares = lanes::plus_product(*squares, residual, residual);
-                        }
+                    for lane in (0..LANES).filter(|&lane| one[lane] > 0.0) {
+                        let slice = lane * terms.slices + slices[lane] as usize;
+                        self.explain((line, lane), slice, &firsts, count);
                     }
                 }
             }
@@ -123,6 +105,29 @@ impl<'a> Several<'a> {
                     }
                 }
             }
+        }
+    }
+
+    /// Adds one sample of a group's pixel, by the coefficients of the group's slice.
+    #[inline(always)]
+    fn explain(&mut self, (line, lane): (usize, usize), slice: usize, firsts: &[Eight], count: usize) {
+        let (width, panels) = (self.columns.len(), self.differences.len());
+        let values = self.samples.values.iter().zip(firsts);
+        for ((value, first), out) in values.zip(rows_mut(self.differences.as_flattened_mut(), count)) {
+            out.fill(value[line % AT_ONCE][lane % LANES] - first[lane % LANES]);
+        }
+        let coefficients = rows(row_at(self.coefficients, width * panels, slice), width);
+        let explained = row_at_mut(self.explained, panels, lane).iter_mut();
+        for (([sum, rest, squares], difference), coefficients) in explained.zip(&*self.differences).zip(coefficients) {
+            let mut fitted = NONE;
+            for (column, coefficient) in self.columns.iter().zip(coefficients) {
+                let column = [column[line % AT_ONCE][lane % LANES]; LANES];
+                fitted = lanes::plus_product(fitted, column, *coefficient);
+                lanes::keep_together();
+            }
+            let residual = minus(difference, &fitted);
+            (*sum, *rest) = (plus(sum, &fitted), plus(rest, &residual));
+            *squares = lanes::plus_product(*squares, residual, residual);
         }
     }
 }
