@@ -118,13 +118,11 @@ pub(super) fn batch_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Opt
 
 impl Units {
     /// A value in units. Only what no fit is made to, or is known of it, is far beyond them; its square fits too.
-    #[inline]
     pub(super) fn apply(&self, value: &Eight) -> Eight {
         minus(&self.scale(value), &self.offsets)
     }
 
     /// The same with the zero at 0.
-    #[inline]
     pub(super) fn scale(&self, value: &Eight) -> Eight {
         let limited = lanes::zip(value, &self.limits, |value, most| Real::min(Real::max(value, -most), most));
         product(&limited, &self.scales)
@@ -170,14 +168,12 @@ impl<'a> Batch<'a> {
     }
 
     /// The blocks that have pixels of some colours.
-    #[inline]
     pub(super) fn blocks(&self, colours: Colours) -> impl Iterator<Item = usize> + use<> {
         let has_colours = self.has_colours;
         (0..self.inside.len()).filter(move |&block| !has_colours || colours.has(block))
     }
 
     /// A sum over all pixels of a group, by those of its lanes.
-    #[inline]
     pub(super) fn joined(&self, sum: &Eight) -> Eight {
         if self.is_joined { [lanes::sum(sum); LANES] } else { *sum }
     }
@@ -189,7 +185,6 @@ impl<'a> Batch<'a> {
     }
 
     /// Where in its group the pixel of a slot is.
-    #[inline]
     pub(super) fn member(&self, (block, row): (usize, usize), lane: usize) -> usize {
         let slot = if self.has_colours {
             COLOURS * AT_ONCE * (block / COLOURS) + block % COLOURS + COLOURS * row
@@ -200,7 +195,6 @@ impl<'a> Batch<'a> {
     }
 
     /// The given pixels of a slot; another's where a lane has none.
-    #[inline]
     pub(super) fn pixels(&self, (block, row): (usize, usize)) -> [usize; LANES] {
         at(self.numbers, block)[row % AT_ONCE].map(|number| number.to_bits() as usize)
     }
@@ -305,7 +299,6 @@ impl<'a> Batch<'a> {
     }
 
     /// As for one pixel's samples: the zero at a value, the unit near the largest.
-    #[inline]
     fn set_units(&mut self) {
         let channels = self.call.config.channels;
         for (channel, units) in self.units.iter_mut().enumerate().take(channels) {

@@ -62,7 +62,6 @@ impl Choices {
     }
 
     /// Which value of a sample a choice is of, and which fit it has: 0 for none.
-    #[inline]
     fn value_and_fit(&self, channel: usize, choice: usize) -> (usize, usize) {
         if choice <= self.fits { (channel, choice) } else { (self.channels + channel, choice - self.fits - 1) }
     }
@@ -108,12 +107,10 @@ impl<'a> Shares<'a> {
     }
 
     /// How a channel's correction is shared out.
-    #[inline]
     pub(super) fn of(&self, time: usize, channel: usize) -> &[Eight] {
         row_at(self.all, self.choices.count, time * self.choices.channels + channel)
     }
 
-    #[inline]
     fn of_mut(&mut self, time: usize, channel: usize) -> &mut [Eight] {
         row_at_mut(self.all, self.choices.count, time * self.choices.channels + channel)
     }
@@ -231,7 +228,6 @@ impl<'a> Spreads<'a> {
 
     /// The sums of a choice, across pixels and within them: for 0 as all pixels count them, else as a colour does. What
     /// its own pixels say of fits to the others is biased by them, and counts less.
-    #[inline]
     fn sums(&self, channel: usize, choice: usize, by: usize) -> [Eight; 2] {
         [&*self.across, &*self.within].map(|all| {
             let mut each = at(row_at(all, self.choices.count, channel), choice);
@@ -327,7 +323,6 @@ impl<'a> Spreads<'a> {
     }
 
     /// A mixture's spread relative to the plain mean's, by the samples within pixels where `inside`.
-    #[inline]
     pub(super) fn ratio(&self, channel: usize, shares: &[Eight], inside: bool) -> Eight {
         let sum = |choice: usize| {
             let [across, within] = self.sums(channel, choice, 0);
@@ -348,13 +343,11 @@ impl<'a> Spreads<'a> {
 }
 
 /// Sums of squares, none below what is nothing beside the unit and yet has quotients that are numbers.
-#[inline]
 fn no_less(sums: &Eight) -> Eight {
     lanes::each(sums, |sum| Real::max(sum, 1e-24))
 }
 
 /// What is told of a sum of squares beside one of those; of what is no number, too.
-#[inline]
 fn no_more(sums: &Eight) -> Eight {
     lanes::each(sums, |sum| Real::min(sum, 1e7) * 1e30)
 }

@@ -113,7 +113,6 @@ pub(super) struct Edges<'a> {
 }
 
 /// The orthonormal Legendre polynomial of degree 1 of a coordinate.
-#[inline]
 const fn linear(u: f32) -> f32 {
     (u + u - 1.0) * SQRT_3
 }
@@ -193,7 +192,6 @@ impl<'a> Edges<'a> {
         }
     }
 
-    #[inline]
     fn samples(&self, batch: &Batch<'_>, block: usize) -> impl Iterator<Item = (&Four, &Four, &Four, &[Four])> {
         let (n, width) = (batch.call.n, 3 + batch.call.config.channels);
         (block * n..(block + 1) * n).filter_map(move |sample| {
@@ -202,7 +200,6 @@ impl<'a> Edges<'a> {
         })
     }
 
-    #[inline]
     fn read(&mut self, batch: &Batch<'_>, block: usize) {
         let (call, width) = (batch.call, 3 + batch.call.config.channels);
         let inside = at(batch.inside, block);
@@ -435,7 +432,6 @@ impl<'a> Edges<'a> {
     }
 
     /// Least squares to the lit samples of the training set.
-    #[inline]
     fn fit_lit(&self, batch: &Batch<'_>, a: &mut [[Eight; MAX_FIXED + SLOPES]; Config::MAX_CHANNELS]) {
         let (fixed, width) = (batch.terms.fixed(), batch.terms.fixed() + SLOPES);
         let sums = self.training_lit.part(0);
@@ -535,7 +531,6 @@ impl<'a> Edges<'a> {
     }
 
     /// The part of a polynomial that the pixels' places decide.
-    #[inline]
     fn place_part(&self, batch: &Batch<'_>, (block, row): (usize, usize), coefficients: &[Eight]) -> Eight {
         let places = row_at(batch.places, batch.terms.fixed(), block).iter().zip(coefficients);
         places.fold(NONE, |sum, (place, coefficient)| lanes::plus_product(sum, place[row % AT_ONCE], *coefficient))
@@ -571,7 +566,6 @@ impl<'a> Edges<'a> {
     }
 
     /// The interpolant between the points.
-    #[inline]
     fn interpolate(&self, x: &Eight, y: &Eight) -> Eight {
         let mut out = NONE;
         for lane in 0..LANES {
@@ -595,7 +589,6 @@ impl<'a> Edges<'a> {
 }
 
 /// The penalty of a column.
-#[inline]
 fn penalty(penalties: &[f32], fixed: usize, column: usize) -> f32 {
     let index = if column < fixed { column.min(1) } else { 2 + column - fixed };
     at(penalties, index)

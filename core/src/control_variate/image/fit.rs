@@ -127,24 +127,20 @@ impl<'a> Fits<'a> {
     }
 
     /// What a fit, or without one the mean, leaves of the samples of a colour about their pixels' means.
-    #[inline]
     pub(super) fn within(&self, value: usize, colour: usize, fit: usize) -> Eight {
         at(row_at(self.within, 1 + self.count, value * COLOURS + colour), fit)
     }
 
     /// The candidates' corrections of a value of a block.
-    #[inline]
     pub(super) fn corrections(&self, block: usize, value: usize) -> &[Four] {
         row_at(self.corrections, self.count, block * self.values + value)
     }
 
-    #[inline]
     pub(super) fn corrections_mut(&mut self, block: usize, value: usize) -> &mut [Four] {
         row_at_mut(self.corrections, self.count, block * self.values + value)
     }
 
     /// Sets what there is of the samples of a colour, without a fit.
-    #[inline]
     fn set_whole(&mut self, value: usize, colour: usize, whole: &Eight) {
         if let Some(out) = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour).first_mut() {
             *out = *whole;
@@ -152,7 +148,6 @@ impl<'a> Fits<'a> {
     }
 
     /// Sets what a fit leaves of the samples of a colour. A difference of sums has no more digits than they.
-    #[inline]
     pub(super) fn set_within(&mut self, value: usize, colour: usize, fit: usize, left: &Eight) {
         let row = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour);
         let whole = at(row, 0);
@@ -208,7 +203,6 @@ impl<'a> Fits<'a> {
     }
 
     /// A candidate's coefficients for a value.
-    #[inline]
     fn coefficients(&self, terms: &Terms, value: usize, fit: usize) -> &[Eight] {
         first(row_at(self.coefficients, terms.columns(), value * self.count + fit), at(&terms.ends, fit))
     }

@@ -30,17 +30,14 @@ impl Place {
     }
 
     /// Column, row and frame.
-    #[inline]
     fn split(self) -> [usize; 3] {
         [0, Self::BITS, 2 * Self::BITS].map(|shift| (self.0 >> shift & Self::MASK) as usize)
     }
 
-    #[inline]
     pub(super) fn split_each(places: &[Self; LANES]) -> [[u32; LANES]; 3] {
         [0, Self::BITS, 2 * Self::BITS].map(|shift| places.map(|place| place.0 >> shift & Self::MASK))
     }
 
-    #[inline]
     pub(super) fn read(number: f32) -> Self {
         Self(number.to_bits() & ((1 << (3 * Self::BITS)) - 1))
     }
@@ -140,14 +137,12 @@ impl Layout<'_> {
     }
 
     /// The image's number of pixel `index` of a group, which is at `place` in its window.
-    #[inline]
     pub(super) fn pixel(&self, [left, top]: [usize; 2], place: Place, index: usize) -> usize {
         let [x, y, frame] = place.split();
         if self.is_joined() { index } else { self.windows.number(left + x, top + y, frame) }
     }
 
     /// Divides windows `first` to before `end` into groups.
-    #[inline]
     pub(super) fn divide(&self, first: usize, end: usize, groups: &mut Groups<'_>) {
         groups.count = 0;
         if self.is_joined() {
@@ -209,7 +204,6 @@ impl Groups<'_> {
     }
 
     /// Group `index` in the order of their windows.
-    #[inline]
     pub(super) fn numbered(&self, index: usize) -> Group {
         let record = row_at(self.records, self.width, index).first_chunk::<RECORD>();
         let [window, start, len, has_edges] = record.map_or([0; RECORD], |record| record.map(bits));
@@ -248,7 +242,6 @@ impl Groups<'_> {
     }
 
     /// The groups from the largest to the smallest.
-    #[inline]
     pub(super) fn by_size(&self, place: usize) -> Option<Group> {
         let &index = first(self.order, self.count).get(place)?;
         Some(self.numbered(bits(index)))
@@ -264,18 +257,15 @@ impl Groups<'_> {
     }
 
     /// Where the limits of a turn begin.
-    #[inline]
     fn limits_at(&self, group: &Group, turn: usize) -> usize {
         group.index * self.width + RECORD + 2 + self.channels + turn * 2 * self.channels
     }
 
     /// For each channel the lowest and the highest value that fits are made to in a turn.
-    #[inline]
     pub(super) fn limits(&self, group: &Group, turn: usize) -> &[f32] {
         part(self.records, self.limits_at(group, turn), 2 * self.channels)
     }
 
-    #[inline]
     pub(super) fn limits_mut(&mut self, group: &Group, turn: usize) -> &mut [f32] {
         part_mut(self.records, self.limits_at(group, turn), 2 * self.channels)
     }
@@ -286,14 +276,12 @@ impl Groups<'_> {
     }
 
     /// The places of a group's pixels, to be read; none where all pixels are one group.
-    #[inline]
     pub(super) fn members(&self, group: &Group) -> &[f32] {
         part(self.list, group.start, group.len)
     }
 }
 
 /// A count that was kept as bits.
-#[inline]
 fn bits(number: f32) -> usize {
     number.to_bits() as usize
 }

@@ -24,14 +24,12 @@ const FAINT: f32 = 1.0 / MOST;
 type Sums = [Eight; KNOWN_SUMS];
 
 /// Of one pixel, by its f, its a and a - A.
-#[inline]
 fn products([mean, known, apart]: &[Eight; 3]) -> Sums {
     let times = |a: &Eight| product(a, apart);
     let integral = minus(known, apart);
     [*mean, *known, times(apart), times(mean), times(&integral)]
 }
 
-#[inline]
 fn both(a: &Sums, b: &Sums) -> Sums {
     let mut sums = *a;
     sums.iter_mut().zip(b).for_each(|(sum, b)| *sum = plus(sum, b));
@@ -50,7 +48,6 @@ fn other_lanes(sum: &Eight) -> Eight {
 }
 
 /// The coefficient by some pixels.
-#[inline]
 fn coefficient([mean, known, square, mean_product, integral_product]: &Sums) -> Eight {
     let known_divisor = lanes::divisor(&known.map(|known| Real::max(known, FAINT)));
     let square_divisor = lanes::divisor(&square.map(|square| Real::max(square, FAINT * FAINT)));

@@ -154,7 +154,6 @@ impl Call<'_> {
 
     /// What is told of the groups' errors. Bright pixels count: without them the error would be told too small where
     /// every pixel has rare bright samples.
-    #[inline]
     fn tell(&self, groups: &mut Groups<'_>, batch: &Batch<'_>, spreads: &Spreads<'_>, shares: &Shares<'_>) {
         let channels = self.config.channels;
         let by_groups = self.error_is_the_groups();
@@ -238,7 +237,6 @@ impl Batch<'_> {
     }
 
     /// Finds the limits of the groups' values for a turn, where any is too far from those of the `judges`.
-    #[inline]
     pub(super) fn find_limits(&self, groups: &mut Groups<'_>, (turn, judges): (usize, Colours), shares: &Shares<'_>) {
         let channels = self.call.config.channels;
         for channel in 0..channels {

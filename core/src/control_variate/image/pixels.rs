@@ -309,7 +309,6 @@ impl Windows {
         [((self.used.x + column) * self.stride).min(width.saturating_sub(across)), self.top(row)]
     }
 
-    #[inline]
     pub(super) fn number(&self, x: usize, y: usize, frame: usize) -> usize {
         (frame * self.given.height + y - self.given.y) * self.given.width + x - self.given.x
     }

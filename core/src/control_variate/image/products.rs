@@ -36,12 +36,10 @@ pub(super) fn plus(a: &Eight, b: &Eight) -> Eight {
     lanes::zip(a, b, |a, b| a + b)
 }
 
-#[inline]
 pub(super) fn minus(a: &Eight, b: &Eight) -> Eight {
     lanes::zip(a, b, |a, b| a - b)
 }
 
-#[inline]
 pub(super) fn product(a: &Eight, b: &Eight) -> Eight {
     lanes::zip(a, b, |a, b| a * b)
 }
@@ -116,7 +114,6 @@ impl Colours {
     pub(super) const HALVES: [Self; 2] = [Self(0b1001), Self(0b0110)];
 
     /// Whether a block, or a part, is of one of these.
-    #[inline]
     pub(super) fn has(self, index: usize) -> bool {
         self.0 >> (index % COLOURS) & 1 == 1
     }
@@ -184,7 +181,6 @@ impl<'a> Sums<'a> {
         self.all.iter_mut().for_each(|sum| *sum = [lanes::sum(sum); LANES]);
     }
 
-    #[inline]
     pub(super) fn part(&self, part: usize) -> Part<&[Eight]> {
         let sums = row_at(self.all, Self::len(self.columns, self.values), part);
         let (gram, rest) = halves(sums, packed_len(self.columns));
@@ -192,7 +188,6 @@ impl<'a> Sums<'a> {
         Part { gram, sides, squares }
     }
 
-    #[inline]
     pub(super) fn part_mut(&mut self, part: usize) -> Part<&mut [Eight]> {
         let sums = row_at_mut(self.all, Self::len(self.columns, self.values), part);
         let (gram, rest) = halves_mut(sums, packed_len(self.columns));

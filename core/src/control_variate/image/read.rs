@@ -11,7 +11,6 @@ use core::ops::Range;
 
 impl Call<'_> {
     /// The pixels' lowest and highest values, as fits see them.
-    #[inline]
     pub(super) fn range(&self, pixels: &[usize; LANES], channel: usize) -> [Eight; 2] {
         let (mut low, mut high) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
         for begin in (0..self.n).step_by(AT_ONCE) {
@@ -28,7 +27,6 @@ impl Call<'_> {
     }
 
     /// A channel of one of a pixel's so many rows of numbers, for eight pixels, divided by the pixels' factors.
-    #[inline]
     pub(super) fn gather(
         &self,
         rows: &[f32],
@@ -42,7 +40,6 @@ impl Call<'_> {
         values
     }
 
-    #[inline]
     fn divide_by_factors(&self, pixels: &[usize; LANES], channel: usize, values: &mut Eight) {
         if !self.image.factors.is_empty() {
             for (value, pixel) in values.iter_mut().zip(pixels) {
@@ -52,7 +49,6 @@ impl Call<'_> {
     }
 
     /// As many of a pixel's so many rows of numbers as `out` holds, from one on, for eight pixels.
-    #[inline]
     fn put_rows(
         &self,
         rows: &[f32],
@@ -86,7 +82,6 @@ impl Call<'_> {
     }
 
     /// What a pixel's values are divided by. Black says nothing about what it multiplies: 1.
-    #[inline]
     pub(super) fn factor(&self, pixel: usize, channel: usize) -> f64 {
         let factor = self.image.factors.get(pixel * self.config.channels + channel).copied().unwrap_or(1.0);
         if factor > 0.0 { f64::from(factor) } else { 1.0 }
@@ -149,7 +144,6 @@ impl Call<'_> {
 
     /// Values of samples of each pixel, as they were given but for factors and what is known of them: in each column
     /// from `row` on.
-    #[inline]
     fn put_values(
         &self,
         batch: &Batch<'_>,

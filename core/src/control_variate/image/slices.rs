@@ -55,7 +55,6 @@ pub(super) struct Apart<'a> {
 }
 
 /// Puts a row together, each lane of another's.
-#[inline]
 fn gather(out: &mut [Eight], of: &[&[Eight]; LANES]) {
     for lane in 0..LANES {
         for (out, entry) in out.iter_mut().zip(of[lane]) {
@@ -65,7 +64,6 @@ fn gather(out: &mut [Eight], of: &[&[Eight]; LANES]) {
 }
 
 /// Entry (i, k) of a symmetric matrix.
-#[inline]
 fn symmetric(triangle: &[Eight], i: usize, k: usize) -> Eight {
     at(triangle, packed_len(i.max(k)) + i.min(k))
 }
@@ -163,7 +161,6 @@ impl<'a> Apart<'a> {
     }
 
     /// Lanes of a slice's block.
-    #[inline]
     fn block_len(&self, batch: &Batch<'_>) -> usize {
         packed_len(self.own) + (self.width + batch.values + batch.terms.fixed()) * self.own
     }

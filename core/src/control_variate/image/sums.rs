@@ -35,7 +35,6 @@ pub(super) struct Band<'a> {
 /// A number for each of eight pixels, with which the last operations are done.
 type Wide = Lanes<f64>;
 
-#[inline]
 fn wide(a: &Eight) -> Wide {
     let mut out = [0.0; LANES];
     for l in 0..LANES {
@@ -45,7 +44,6 @@ fn wide(a: &Eight) -> Wide {
 }
 
 /// `f(a)` lane by lane, as an `f32`.
-#[inline]
 fn narrow(a: &Wide, f: impl Fn(f64) -> f32) -> Eight {
     let mut out = NONE;
     for l in 0..LANES {
@@ -55,19 +53,16 @@ fn narrow(a: &Wide, f: impl Fn(f64) -> f32) -> Eight {
 }
 
 /// 1 / a lane by lane, where that is positive.
-#[inline]
 fn inverse(a: &Eight) -> Wide {
     lanes::zip(&[1.0; LANES], &lanes::divisor(&wide(a)), |one, a| one / a)
 }
 
 /// From 1 at the centre linearly to almost 0 at the ends.
-#[inline]
 fn hat(place: u32, over_extent: f32) -> f32 {
     1.0 - Real::abs((2 * place as i32 + 1) as f32 * over_extent - 1.0)
 }
 
 /// Eight numbers, each so many after the one before; 0 where there is none.
-#[inline]
 fn every(step: usize, numbers: &[f32]) -> Eight {
     match numbers.first_chunk() {
         // One instruction, instead of eight and as many addresses.
@@ -255,7 +250,6 @@ impl Call<'_> {
     }
 
     /// A channel of a sample of each pixel, as it was given.
-    #[inline]
     fn given(&self, pixel: usize, sample: usize, channel: usize) -> Wide {
         let channels = self.config.channels;
         let values = from(self.reader.inputs(), (pixel * self.n + sample) * channels + channel);

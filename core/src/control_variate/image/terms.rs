@@ -30,7 +30,6 @@ const STRENGTH: f64 = 0.003;
 pub(super) const SINGULAR: f32 = 64.0 * f32::EPSILON;
 
 /// What penalties of a fit to so many samples are multiplied by.
-#[inline]
 pub(super) fn scale(config: &Config, samples: &Eight) -> Eight {
     let strength = ridge::strength::<f32>(config.ridge, STRENGTH) as f32;
     samples.map(|samples| strength * Real::max(samples, 0.0))
@@ -62,7 +61,6 @@ pub(super) struct Terms {
 
 impl Terms {
     /// For fits to so many pixels of a call; perhaps with an edge.
-    #[inline]
     pub(super) fn new(layout: &Layout<'_>, pixels: usize, has_edges: bool) -> Self {
         let (config, shape, axes) = (layout.config, &layout.shape, layout.windows.axes());
         let (functions, fixed) = (config.controls + shape.columns(), 1 + axes);
@@ -105,30 +103,25 @@ impl Terms {
     }
 
     /// The constant and the axes.
-    #[inline]
     pub(super) fn fixed(&self) -> usize {
         1 + self.axes
     }
 
-    #[inline]
     pub(super) fn columns(&self) -> usize {
         self.fixed() + self.functions + self.axes * self.moving.1
     }
 
     /// Columns of sums of pixels' means: where slices are apart, as many as trends need.
-    #[inline]
     pub(super) fn of_means(&self) -> usize {
         if self.slices > 0 { self.fixed() } else { self.columns() }
     }
 
     /// Columns of sums of what is within pixels.
-    #[inline]
     pub(super) fn of_deviations(&self) -> usize {
         if self.slices > 0 { 0 } else { self.columns() }
     }
 
     /// Values of sums by slices, of `n` samples of each pixel: of several also the pixels' means.
-    #[inline]
     pub(super) fn of_slices(&self, values: usize, n: usize) -> usize {
         if self.slices == 0 { 0 } else { values * n.min(2) }
     }
@@ -140,7 +133,6 @@ impl Terms {
     }
 
     /// Which column a slice's own one is, but for a factor, where a sample is of the slice; and the square of that.
-    #[inline]
     pub(super) fn source(&self, own: usize) -> (usize, f32) {
         let count = self.slices as f32;
         match own.checked_sub(1) {
@@ -151,7 +143,6 @@ impl Terms {
     }
 
     /// The columns that change within a pixel: what the function is multiplied by, and which function it is.
-    #[inline]
     pub(super) fn changing<'p>(&self, places: &'p [Four]) -> impl Iterator<Item = (&'p Four, usize)> + use<'p> {
         let (functions, (first, count)) = (self.functions, self.moving);
         places.iter().enumerate().flat_map(move |(axis, place)| {
@@ -174,7 +165,6 @@ impl Terms {
     }
 
     /// The penalty of each column, relative to the strength times the number of samples.
-    #[inline]
     pub(super) fn penalties(&self, config: &Config, basis: &Basis, out: &mut [f32]) {
         let (own, rest) = halves_mut(out, self.fixed());
         for (index, penalty) in own.iter_mut().enumerate() {
@@ -191,7 +181,6 @@ impl Terms {
 
     /// What is added to a column's sum of squares, `square`, for its penalty. What a control function is measured in is
     /// its maker's choice.
-    #[inline]
     pub(super) fn ridge(&self, column: usize, penalty: f32, scale: &Eight, square: &Eight, count: &Eight) -> Eight {
         let mut ridge = scale.map(|scale| scale * penalty);
         if (self.fixed()..self.fixed() + self.moving.0).contains(&column) {

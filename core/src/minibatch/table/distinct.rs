@@ -79,7 +79,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     }
 
     /// Draws until an item has not been taken, of which a draw has the probability `left`.
-    #[inline]
     fn draw_left(&self, mixture: &Mixture, left: f64, rng: &mut Rng) -> u32 {
         let (mut item, mut expected) = ([0], 0.0);
         while expected < PATIENCE {

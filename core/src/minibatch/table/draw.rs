@@ -215,7 +215,6 @@ impl Descent<'_> {
     }
 
     /// From a node of the level that starts at `start` to one of its children, whose weight is returned.
-    #[inline]
     fn step<K: Kernel>(&self, start: usize, place: &mut u32, rest: &mut i64) -> i64 {
         let Some(node) = self.nodes.get(start + *place as usize) else { return 1 };
         let child = K::find_child(node, *rest) % CHILDREN;
@@ -226,7 +225,6 @@ impl Descent<'_> {
     }
 
     /// 1 / (factor p), with one division, for an item of importance `q` in a block of this sum and weight.
-    #[inline]
     fn weight(&self, q: f32, total: f64, weight: f64) -> f32 {
         (total / (self.by_weight * weight * f64::from(q) + self.by_item * total)) as f32
     }
@@ -242,7 +240,6 @@ pub(super) fn check_lengths(index: &[u32], weight: &Option<&mut [f32]>) -> Resul
 }
 
 /// The bits of draw `k`: draws need no order.
-#[inline]
 pub(super) fn noise(seed: u64, k: u64) -> u64 {
     split_mix(seed, k.wrapping_add(1))
 }

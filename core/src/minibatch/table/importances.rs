@@ -199,14 +199,12 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
         self.nodes().last().map_or(0, |root| root[CHILDREN - 1]).max(0)
     }
 
-    #[inline]
     pub(super) fn blocks(&self) -> &[Block] {
         let (blocks, _) = self.importance.as_ref().as_chunks();
         first(blocks, self.blocks)
     }
 
     /// The nodes, those of the lowest level first; the root is the last.
-    #[inline]
     pub(super) fn nodes(&self) -> &[Node] {
         let (nodes, _) = self.sums.as_ref().as_chunks();
         first(nodes, self.levels.nodes())

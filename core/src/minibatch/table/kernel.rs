@@ -15,7 +15,6 @@ pub type Block = [f32; ARITY];
 pub trait Kernel {
     /// The sum of a block: of its columns from the first row to the last, and then of the columns from the first to the
     /// last. An importance that is not above 0 counts as 0.
-    #[inline]
     fn total(block: &Block) -> f64 {
         columns(block).1
     }
@@ -23,7 +22,6 @@ pub trait Kernel {
     /// The item of a block that `u` in `0.0..1.0` falls on, and the block's sum: the first whose end is above `u` times
     /// the sum, in the order of columns, where an item ends at the start of its column plus the column's sum up to it.
     /// Never one of importance 0.
-    #[inline]
     fn find_item(block: &Block, u: f64) -> (usize, f64) {
         let (sums, total) = columns(block);
         let y = u * total;
@@ -46,20 +44,17 @@ pub trait Kernel {
 
     /// How many children end at or before `r`: the child that `r`, below the node's weight, falls on. Never one of
     /// weight 0.
-    #[inline]
     fn find_child(node: &Node, r: i64) -> usize {
         node.iter().filter(|end| **end <= r).count()
     }
 
     /// Sets one importance of a block; the sum afterwards.
-    #[inline]
     fn replace(block: &mut Block, item: usize, q: f32) -> f64 {
         block[item % ARITY] = q;
         Self::total(block)
     }
 
     /// Adds to the ends of `child` and of those behind it, wrapping around.
-    #[inline]
     fn add(node: &mut Node, child: usize, difference: i64) {
         let mut ends = *node;
         for (i, end) in ends.iter_mut().enumerate() {
@@ -79,7 +74,6 @@ pub struct Portable;
 impl Kernel for Portable {}
 
 /// [`Kernel::prefetch`], if there is such an element.
-#[inline]
 pub(super) fn prefetch<K: Kernel, T>(all: &[T], at: usize) {
     if let Some(soon) = all.get(at) {
         K::prefetch(soon);
@@ -87,7 +81,6 @@ pub(super) fn prefetch<K: Kernel, T>(all: &[T], at: usize) {
 }
 
 /// The sums of a block's columns, and of the block.
-#[inline]
 fn columns(block: &Block) -> ([f64; 4], f64) {
     let q = block.map(positive);
     let mut sums = [q[0], q[1], q[2], q[3]];
@@ -97,7 +90,6 @@ fn columns(block: &Block) -> ([f64; 4], f64) {
     (sums, ((sums[0] + sums[1]) + sums[2]) + sums[3])
 }
 
-#[inline]
 fn add_row(sums: &[f64; 4], q: &[f64; ARITY], row: usize) -> [f64; 4] {
     // Copied before it is written, which lets compilers use vector instructions.
     let mut out = *sums;
@@ -108,7 +100,6 @@ fn add_row(sums: &[f64; 4], q: &[f64; ARITY], row: usize) -> [f64; 4] {
 }
 
 /// An item taken out of the table for a while has a negative importance, which counts as 0.
-#[inline]
 pub(super) fn positive(q: f32) -> f64 {
     f64::from(if q > 0.0 { q } else { 0.0 })
 }

@@ -28,7 +28,6 @@ impl Mixture {
     }
 
     /// The probability of an item of importance `q` in a block of sum `total` that weighs `weight`.
-    #[inline]
     pub(super) fn probability(&self, q: f32, total: f64, weight: i64) -> f64 {
         let (by_weight, by_item) = self.factors(1.0);
         if total > 0.0 { by_weight * weight as f64 * (positive(q) / total) + by_item } else { by_item }
@@ -96,7 +95,6 @@ impl Scale {
     }
 
     /// The place, and the bits behind its point.
-    #[inline]
     pub(super) fn map(&self, x: u64) -> (u64, u64) {
         let product =
             (u128::from(x.wrapping_sub(self.first) << self.left) * u128::from(self.factor)) >> (self.right % 64);

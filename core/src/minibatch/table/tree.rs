@@ -27,7 +27,6 @@ pub(super) struct Levels {
 
 impl Levels {
     /// Those over so many blocks, at most [`MAX_BLOCKS`].
-    #[inline]
     pub(super) const fn new(blocks: usize) -> Levels {
         let mut start = [0; MAX_LEVELS + 1];
         let mut nodes = blocks.div_ceil(CHILDREN);
@@ -48,28 +47,24 @@ impl Levels {
     }
 
     /// The first node of each level, from the lowest to the highest.
-    #[inline]
     pub(super) fn starts(&self) -> &[usize] {
         first(&self.start, self.depth)
     }
 }
 
 /// Where a child begins and ends.
-#[inline]
 pub(super) fn span(node: &Node, child: usize) -> (i64, i64) {
     // A branch would be mispredicted once in 16 times.
     let begin = select_unpredictable(child == 0, 0, node[child.wrapping_sub(1) % CHILDREN]);
     (begin, node[child % CHILDREN])
 }
 
-#[inline]
 pub(super) fn weight(node: &Node, child: usize) -> i64 {
     let (begin, end) = span(node, child);
     end.wrapping_sub(begin)
 }
 
 /// Changes each child's weight by its difference.
-#[inline]
 pub(super) fn add_all(node: &mut Node, differences: &Node) {
     let mut sum = 0i64;
     for (end, difference) in node.iter_mut().zip(differences) {

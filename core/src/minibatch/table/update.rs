@@ -98,7 +98,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     }
 
     /// Makes the sums follow an item whose importance has been changed.
-    #[inline]
     pub(super) fn refresh(&mut self, item: u32) {
         let in_range = self.change(core::iter::once((item, |q| q)));
         self.restore_scale(in_range);
@@ -106,7 +105,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
 
     /// At most [`CHUNK`] changes: an item, and its new importance from the old. False if the sums are beyond their
     /// range, and wrong until they are built again.
-    #[inline]
     fn change<F: Fn(f32) -> f32>(&mut self, changes: impl Iterator<Item = (u32, F)>) -> bool {
         let scale = self.state.scale;
         let levels = self.levels;
@@ -155,7 +153,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     }
 
     /// Builds the table again if its sum has left the range of its scale.
-    #[inline]
     pub(super) fn restore_scale(&mut self, in_range: bool) {
         let sum = self.sum();
         let least = i64::from(self.state.items / ARITY as u32 + 1) * LEAST_WEIGHT;
@@ -183,7 +180,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     }
 
     /// Builds the sums at the scale there is. False if they are beyond their range.
-    #[inline]
     pub(super) fn build<By: Kernel>(&mut self) -> bool {
         let (levels, scale, used) = (self.levels, self.state.scale, self.used());
         let (blocks, nodes) = self.parts();
@@ -207,7 +203,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     }
 
     /// The blocks and the nodes, to write.
-    #[inline]
     fn parts(&mut self) -> (&mut [Block], &mut [Node]) {
         let (blocks, _) = self.importance.as_mut().as_chunks_mut();
         let (nodes, _) = self.sums.as_mut().as_chunks_mut();
@@ -219,7 +214,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
 const MOST_WEIGHT: f64 = 9_223_372_036_854_774_784.0;
 
 /// The weight of a block: its sum times the scale, rounded, at least 1 if it is not 0.
-#[inline]
 fn weight(total: f64, scale: f64) -> i64 {
     // A number that no i64 holds is an invalid operation on some processors, though the cast saturates.
     let rounded = (total * scale + 0.5).min(MOST_WEIGHT) as i64;
