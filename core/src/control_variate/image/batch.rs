@@ -299,6 +299,7 @@ impl<'a> Batch<'a> {
     }
 
     /// As for one pixel's samples: the zero at a value, the unit near the largest.
+    #[inline(always)]
     fn set_units(&mut self) {
         let channels = self.call.config.channels;
         for (channel, units) in self.units.iter_mut().enumerate().take(channels) {

@@ -237,6 +237,7 @@ impl Batch<'_> {
     }
 
     /// Finds the limits of the groups' values for a turn, where any is too far from those of the `judges`.
+    #[inline(always)]
     pub(super) fn find_limits(&self, groups: &mut Groups<'_>, (turn, judges): (usize, Colours), shares: &Shares<'_>) {
         let channels = self.call.config.channels;
         for channel in 0..channels {
