@@ -247,11 +247,13 @@ impl<'a> Batch<'a> {
                     }
                 }
                 let along = Place::split_each(&places);
-                for l in 0..LANES {
-                    if !self.is_joined {
+                if !self.is_joined {
+                    for l in 0..LANES {
                         numbers[l] = corners[l] + (along[2][l] * height + along[1][l]) * width + along[0][l];
                     }
-                    let other = *other.get_or_insert(numbers[l]);
+                }
+                let other = *other.get_or_insert(numbers[0]);
+                for l in 0..LANES {
                     numbers[l] = if one[l] > 0.0 { numbers[l] } else { other };
                 }
                 let pixels = numbers.map(|number| (number & Image::MAX_PIXELS) as usize);
