@@ -221,8 +221,8 @@ impl Batch<'_> {
                 let sum = sum.map(|sum| {
                     lanes::zip(&sum, &units.powers, |sum, power| if sum.is_finite() { sum * power } else { 0.0 })
                 });
-                for (lane, group) in self.lanes.iter().enumerate() {
-                    for (row, sum) in sum.iter().enumerate() {
+                for (row, sum) in sum.iter().enumerate() {
+                    for (lane, group) in self.lanes.iter().enumerate() {
                         let index = self.member((block, row), lane);
                         let at = (group.start + index) * channels + channel;
                         if index < group.len
