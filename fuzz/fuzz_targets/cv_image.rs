@@ -70,7 +70,7 @@ impl<'a> Arbitrary<'a> for Input {
             stratified: bool::arbitrary(bytes)?,
             slices: small(bytes, 8)?.saturating_sub(3),
             edges: small(bytes, 6)?.saturating_sub(3),
-            controls: small(bytes, 6)?.saturating_sub(2),
+            controls: usize::from(rarely(bytes)?),
             stride: small(bytes, 18)?.saturating_sub(10),
             non_finite: if rarely(bytes)? { NonFinite::Skip } else { NonFinite::Error },
             color: if rarely(bytes)? { Color::LuminanceRatio } else { Color::PerChannel },

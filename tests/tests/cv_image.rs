@@ -351,6 +351,7 @@ fn errors() {
         assert_eq!(image_workspace_len(&Config { solver, ..config }, &of, 2), Err(Error::Unsupported));
     }
     assert_eq!(run(&Config { non_finite: NonFinite::Skip, ..config }, of, &u, &f, 9999), Err(Error::Unsupported));
+    assert_eq!(image_workspace_len(&Config { controls: 1, ..config }, &of, 2), Err(Error::Unsupported));
     let luminance = Config { color: Color::LuminanceRatio, channels: 3, ..config };
     assert_eq!(image_workspace_len(&luminance, &of, 2), Err(Error::Unsupported));
     for (window, frames, fits) in [(32, 1, true), (33, 1, false), (8, 16, true), (8, 17, false), (usize::MAX, 1, false)]

@@ -14,8 +14,6 @@ struct Case {
     n: usize,
     u: Vec<f32>,
     f: Vec<f32>,
-    controls: Vec<f32>,
-    integrals: Vec<f32>,
     surfaces: Vec<u32>,
     factors: Vec<f32>,
 }
@@ -32,8 +30,7 @@ impl Case {
                 f.push(((1.0 + channel as f64) * smooth(u) * (1.0 + 0.1 * pixel as f64) + 0.3 * pixel as f64) as f32);
             }
         }
-        let (controls, integrals) = (vec![], vec![]);
-        Self { config, shape, n, u, f, controls, integrals, surfaces: vec![], factors: vec![] }
+        Self { config, shape, n, u, f, surfaces: vec![], factors: vec![] }
     }
 
     fn with_surfaces(mut self, count: usize, rng: &mut SplitMix64) -> Self {
@@ -48,22 +45,8 @@ impl Case {
         self
     }
 
-    /// Control functions that explain some, with integrals of their own.
-    fn with_controls(mut self, count: usize) -> Self {
-        self.config.controls = count;
-        for u in self.u.chunks(self.config.dims) {
-            self.controls.extend((0..count).map(|k| (3.0 * u[0] + k as f32).sin() + 0.25 * k as f32));
-        }
-        self.integrals = (0..count).map(|k| 0.5 - 0.125 * k as f32).collect();
-        self
-    }
-
     fn pixels(&self) -> usize {
         self.shape.iter().product()
-    }
-
-    fn samples(&self) -> Samples<'_> {
-        Samples { u: &self.u, f: &self.f, controls: &self.controls, control_integrals: &self.integrals }
     }
 
     /// One window: the whole image.
@@ -75,7 +58,7 @@ impl Case {
     }
 
     fn estimates(&self) -> Vec<Estimate> {
-        image(&self.config, &self.image(), self.samples()).unwrap()
+        image(&self.config, &self.image(), Samples::new(&self.u, &self.f)).unwrap()
     }
 
     /// The pixels of a surface, frame by frame by squares of 2 x 2: every fourth is of one colour.
@@ -105,9 +88,9 @@ impl Case {
         at.into_iter().zip(self.shape).filter(|&(_, extent)| extent > 1).map(along).collect()
     }
 
-    /// What the documentation says: for pixels that share a fit the columns constant, axes, control functions, basis,
-    /// and functions of low degree times each axis; then the estimate is the pixel's mean, without what functions and
-    /// products explain there.
+    /// What the documentation says: for pixels that share a fit the columns constant, axes, basis, and functions of
+    /// low degree times each axis; then the estimate is the pixel's mean, without what functions and products explain
+    /// there.
     fn expected(&self, pixel: usize, channel: usize) -> f64 {
         let (config, n) = (&self.config, self.n);
         let group = self.group(self.surfaces.get(pixel));
@@ -119,15 +102,15 @@ impl Case {
         let all: Vec<(usize, usize)> = group.iter().flat_map(|&pixel| samples(pixel)).collect();
         let mean = samples(pixel).map(|(sample, pixel)| value(sample, pixel)).sum::<f64>() / n as f64;
         let fewest = if n == 1 { self.place(pixel).len() + 3 } else { 2 };
-        if group.len() < fewest || (config.order == 0 && config.controls == 0) {
+        if group.len() < fewest || config.order == 0 {
             return mean * self.factor(pixel, channel);
         }
-        let basis = design(&Config { controls: 0, ..*config }, &wide(&self.u));
+        let basis = design(config, &wide(&self.u));
         let axes = self.place(pixel).len();
         // Functions with products: whole degrees, at most 2, below the order, two samples for each column.
         let degrees: Vec<usize> = basis_degrees(config);
         let up_to = |degree: usize| degrees.iter().filter(|&&other| other <= degree).count();
-        let columns = 1 + axes + config.controls + basis.weights.len();
+        let columns = 1 + axes + basis.weights.len();
         let highest = 2.min(config.order.saturating_sub(1)).max(1);
         let fits = |&degree: &usize| 2 * (columns + axes * up_to(degree)) <= all.len();
         let moving = if axes == 0 { None } else { (1..=highest).rev().find(fits) };
@@ -135,16 +118,12 @@ impl Case {
             (0..degrees.len()).filter(|&j| moving.is_some_and(|most| degrees[j] <= most)).collect();
 
         let row = |&(sample, pixel): &(usize, usize)| {
-            let controls = (0..config.controls)
-                .map(|k| f64::from(self.controls[sample * config.controls + k]) - f64::from(self.integrals[k]));
             let (place, functions) = (self.place(pixel), &basis.rows[sample]);
             let products = place.iter().flat_map(|place| moving.iter().map(move |&j| place * functions[j]));
-            place.iter().copied().chain(controls).chain(functions.iter().copied()).chain(products).collect::<Vec<f64>>()
+            place.iter().copied().chain(functions.iter().copied()).chain(products).collect::<Vec<f64>>()
         };
         let rows: Vec<Vec<f64>> = all.iter().map(row).collect();
-        let square = |k: usize| rows.iter().map(|row| row[axes + k].powi(2)).sum::<f64>() / rows.len() as f64;
         let mut weights = vec![1e-3; axes];
-        weights.extend((0..config.controls).map(|k| 1e-7 * square(k)));
         weights.extend(&basis.weights);
         weights.extend((0..axes).flat_map(|_| moving.iter().map(|&j| 8.0 * basis.weights[j])));
 
@@ -207,14 +186,10 @@ impl Case {
         largest
     }
 
-    fn check_within(&self, what: &str, tolerance: f64) {
+    fn check(&self, what: &str) {
         let error = self.error();
         println!("{what} {:?} {} samples: {error:.1e}", self.shape, self.n);
-        assert!(error < tolerance, "{what} {:?} {}: {error:e}", self.shape, self.n);
-    }
-
-    fn check(&self, what: &str) {
-        self.check_within(what, 1e-3);
+        assert!(error < 1e-3, "{what} {:?} {}: {error:e}", self.shape, self.n);
     }
 }
 
@@ -264,7 +239,7 @@ fn surfaces_and_factors() {
 }
 
 #[test]
-fn slices_and_controls() {
+fn slices() {
     let mut rng = SplitMix64::new(3);
     for shape in SHAPES {
         for n in [1, 2, 5] {
@@ -272,23 +247,19 @@ fn slices_and_controls() {
             for order in [1, 2] {
                 let sliced = Config { slices: 3, dims: 3, order, ..base };
                 Case::new(sliced, shape, n, &mut rng).check("slices");
+                let both = Case::new(sliced, shape, n, &mut rng).with_surfaces(2, &mut rng).with_factors(&mut rng);
+                both.check("slices, surfaces and factors");
                 // So many that they are factored apart.
                 let many = Config { slices: 12, channels: 2, ..sliced };
                 Case::new(many, shape, n, &mut rng).with_surfaces(2, &mut rng).check("many slices");
-                Case::new(Config { order, ..base }, shape, n, &mut rng).with_controls(2).check("controls");
-                let both = Case::new(sliced, shape, n, &mut rng).with_controls(1);
-                let both = both.with_surfaces(2, &mut rng).with_factors(&mut rng);
-                // A control function has next to no penalty, which leaves few digits to one sample in each pixel.
-                both.check_within("everything", if n == 1 { 1e-2 } else { 1e-3 });
             }
-            Case::new(Config { order: 0, ..base }, shape, n, &mut rng).with_controls(1).check("controls alone");
         }
     }
     // So many pixels that indicators have products with the axes.
     let sliced = Config { slices: 14, estimator: Estimator::LeaveOneOut, ..Config::new(3, 1, 1) };
     for (n, stratified) in [(1, false), (3, false), (3, true)] {
         let sliced = Config { stratified, ..sliced };
-        Case::new(sliced, [13, 13, 1], n, &mut rng).with_controls(1).check("slopes of many slices");
+        Case::new(sliced, [13, 13, 1], n, &mut rng).check("slopes of many slices");
     }
 }
 
@@ -299,7 +270,7 @@ fn the_oracle_is_sharp() {
     let config = Config { ridge: Ridge::Fixed(0.05), ..Config::new(2, 2, 1) };
     let case = Case::new(config, [5, 4, 1], 2, &mut rng);
     let other = Config { ridge: Ridge::Fixed(0.051), ..config };
-    let estimates = image(&other, &case.image(), case.samples()).unwrap();
+    let estimates = image(&other, &case.image(), Samples::new(&case.u, &case.f)).unwrap();
     let expected = (0..20).map(|pixel| case.expected(pixel, 0));
     let far = estimates.iter().zip(expected).filter(|(a, b)| (f64::from(a.mean[0]) - b).abs() > 1e-5).count();
     assert!(far > 10, "{far}");

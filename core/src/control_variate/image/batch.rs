@@ -15,7 +15,7 @@ use super::sliced::Sliced;
 use super::terms::{MAX_AXES, Terms};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, copy, first_mut, from, from_mut, halves_mut, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{at, copy, first_mut, from_mut, halves_mut, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
 use crate::rows::{first, halves, rows, rows_mut};
 use core::array::from_fn;
@@ -611,17 +611,16 @@ impl Sums<'_> {
     #[inline(always)]
     fn add_apart(&mut self, part: usize, terms: &Terms, places: &[Four], deviations: &Deviations<'_>) {
         let (fixed, width, columns) = (terms.fixed(), terms.functions, terms.columns());
-        let (first, count) = terms.moving;
         let Part { gram, sides, squares } = self.part_mut(part);
         for (i, (factor, function)) in terms.changing(places).enumerate() {
             let others = row_at(deviations.functions, width, function);
             let (plain, products) = halves_mut(from_mut(row_mut(gram, fixed + i), fixed), width.min(i + 1));
             add_products(plain, factor, others);
             // One by one: zipped, the chunks would be counted, and a division may panic.
-            let mut products = products.chunks_mut(count.max(1));
+            let mut products = products.chunks_mut(terms.moving.max(1));
             for axis in places.iter().skip(1) {
                 if let Some(out) = products.next() {
-                    add_products(out, &times(factor, axis), from(others, first));
+                    add_products(out, &times(factor, axis), others);
                 }
             }
         }

@@ -6,7 +6,7 @@
 use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED, blocks};
 use super::call::Layout;
-use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only, plus, product};
+use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only, product};
 use super::slices::Apart;
 use super::terms::{MAX_FITS, SINGULAR, Terms, scale};
 use crate::arena::Arena;
@@ -79,7 +79,7 @@ impl<'a> Fits<'a> {
             penalties: arena.take(terms.columns()),
             apart: (terms.slices > 0).then(|| Apart::new(terms, values, call.n, arena)),
         };
-        terms.penalties(call.config, call.basis, fits.penalties);
+        terms.penalties(call.basis, fits.penalties);
         fits
     }
 
@@ -175,7 +175,7 @@ impl<'a> Fits<'a> {
         let Part { gram, sides, .. } = self.system.part_mut(0);
         for (j, penalty) in self.penalties.iter().enumerate() {
             let Some(diagonal) = row_mut(gram, j).last_mut() else { continue };
-            *diagonal = plus(diagonal, &terms.ridge(j, *penalty, &scale, diagonal, &count));
+            *diagonal = lanes::plus_product(*diagonal, scale, [*penalty; LANES]);
             lanes::keep_together();
         }
         ldlt::factor_each(gram, width);
@@ -286,13 +286,12 @@ impl<'a> Fits<'a> {
         let terms = &batch.terms;
         let functions = row_at(batch.functions, terms.functions, block);
         let places = row_at(batch.places, terms.fixed(), block);
-        let (first, count) = terms.moving;
         for value in 0..self.values {
             for fit in 0..terms.ends.len() {
                 let own = from(self.coefficients(terms, value, fit), terms.fixed());
                 let mut fitted = combine([NONE; AT_ONCE], functions, own);
-                for (axis, own) in places.iter().skip(1).zip(rows(from(own, terms.functions), count)) {
-                    let slope = combine([NONE; AT_ONCE], from(functions, first), own);
+                for (axis, own) in places.iter().skip(1).zip(rows(from(own, terms.functions), terms.moving)) {
+                    let slope = combine([NONE; AT_ONCE], functions, own);
                     for row in 0..AT_ONCE {
                         fitted[row] = lanes::plus_product(fitted[row], axis[row], slope[row]);
                     }

@@ -76,7 +76,7 @@ fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
     // Halves that choose for each other would have to know nothing of each other's samples.
     let is_halved = config.estimator == Estimator::KFold && image.has_known();
     let solver = matches!(config.solver, Solver::Auto | Solver::NormalEquations);
-    let samples = config.color == Color::PerChannel && config.non_finite == NonFinite::Error;
+    let samples = config.color == Color::PerChannel && config.non_finite == NonFinite::Error && config.controls == 0;
     if estimator && !is_halved && solver && samples { Ok(()) } else { Err(Error::Unsupported) }
 }
 
@@ -85,11 +85,11 @@ fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
 ///
 /// # Errors
 /// As for [`estimate`](super::estimate); [`Error::Unsupported`] also for a luminance ratio, for skipping samples, for
-/// estimators other than the robust, leave-one-out and K-fold ones, for the last if something is known, and for solvers
-/// other than the normal equations; [`Error::Range`] also for an image without pixels or with more than
-/// [`Image::MAX_PIXELS`], for windows and parts that [`Image`] does not allow, for negative factors or integrals and
-/// for arrays of the wrong length; [`Error::NotFinite`] for factors, for what is known and for integrals that are not
-/// finite.
+/// control functions, for estimators other than the robust, leave-one-out and K-fold ones, for the last if something is
+/// known, and for solvers other than the normal equations; [`Error::Range`] also for an image without pixels or with
+/// more than [`Image::MAX_PIXELS`], for windows and parts that [`Image`] does not allow, for negative factors or
+/// integrals and for arrays of the wrong length; [`Error::NotFinite`] for factors, for what is known and for integrals
+/// that are not finite.
 ///
 /// ```
 /// use noisefloor::control_variate::{Config, Image, Samples, estimate_image, image_workspace_len};

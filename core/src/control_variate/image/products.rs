@@ -1,6 +1,5 @@
 //! Sums of products, of eight groups side by side: what fits are made from.
 
-use super::super::config::Config;
 use crate::arena::Arena;
 use crate::basis::MAX_DIMS;
 use crate::lanes::{self, LANES, Lanes};
@@ -129,9 +128,8 @@ pub(super) const AT_ONCE_LANES: usize = AT_ONCE * LANES;
 
 /// Four rows of samples or pixels.
 pub(super) struct Rows<'a> {
-    /// Where samples are, and their control functions: what is left of others where there is no row.
+    /// Where samples are: what is left of others where there is no row.
     pub(super) x: [Lanes<f32, AT_ONCE_LANES>; MAX_DIMS],
-    pub(super) h: [Lanes<f32, AT_ONCE_LANES>; Config::MAX_CONTROLS],
     pub(super) columns: &'a mut [Four],
     pub(super) values: &'a mut [Four],
 }
@@ -140,8 +138,7 @@ impl<'a> Rows<'a> {
     pub(super) fn new(columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Self {
         let (columns, values) = (arena.take_fours(columns), arena.take_fours(values));
         values.iter_mut().for_each(|four| *four = [NONE; AT_ONCE]);
-        let (x, h) = ([[0.0; AT_ONCE_LANES]; MAX_DIMS], [[0.0; AT_ONCE_LANES]; Config::MAX_CONTROLS]);
-        Self { x, h, columns, values }
+        Self { x: [[0.0; AT_ONCE_LANES]; MAX_DIMS], columns, values }
     }
 }
 

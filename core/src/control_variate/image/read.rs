@@ -97,23 +97,16 @@ impl Call<'_> {
         samples: Range<usize>,
         rows: &mut Rows<'_>,
     ) {
-        let Rows { x, h, columns, values } = rows;
+        let Rows { x, columns, values } = rows;
         for (run, slot) in slots.enumerate() {
             let pixels = batch.pixels((block, slot));
             let first = pixels.map(|pixel| pixel * self.n + samples.start);
             self.reader.put_positions(&first, samples.len(), run * LANES, x);
-            if self.config.controls > 0 {
-                for (lane, first) in first.iter().enumerate() {
-                    for sample in 0..samples.len() {
-                        self.reader.get(first + sample).put((run + sample) * LANES + lane, x, h);
-                    }
-                }
-            }
             self.put_values(batch, (block, slot), &pixels, &samples, run, values);
         }
         batch.put_in_units(values);
         let wide = columns.as_flattened_mut().as_flattened_mut().as_chunks_mut::<AT_ONCE_LANES>().0;
-        self.reader.columns(self.basis, x, h, wide);
+        self.basis.evaluate(x, wide);
         if self.n == 1 {
             batch.empty_missing(block, columns.iter_mut().chain(values.iter_mut()));
         }

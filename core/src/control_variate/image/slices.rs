@@ -170,11 +170,8 @@ impl<'a> Apart<'a> {
         let (terms, values, slices) = (&batch.terms, batch.values, batch.terms.slices);
         let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(batch));
         let linear = batch.call.shape.linear() as f32;
-        let squares = |totals: &Sums<'_>, column: usize| {
-            let each = (0..slices).map(|slice| at(row(totals.part(slice).gram, column), column));
-            each.fold(NONE, |sum, square| plus(&sum, &square))
-        };
-        let count = squares(&self.totals, 0);
+        let counts = (0..slices).map(|slice| at(self.totals.part(slice).gram, 0));
+        let count = counts.fold(NONE, |sum, count| plus(&sum, &count));
         // Where a pixel's own sample is left out afterwards, of which there is one less.
         let (left_out, units) = if batch.call.n == 1 { (1.0, fixed) } else { (0.0, 0) };
         let scale = scale(batch.call.config, &count.map(|count| count - left_out));
@@ -182,7 +179,7 @@ impl<'a> Apart<'a> {
             let out = row_mut(self.border, j);
             out.iter_mut().for_each(|out| *out = NONE);
             if let Some(out) = out.last_mut() {
-                *out = terms.ridge(j, *penalty, &scale, &squares(&self.totals, j), &count);
+                *out = scale.map(|scale| scale * penalty);
             }
         }
         for (i, side) in rows_mut(self.sides, width).take(values + units).enumerate() {

@@ -5,10 +5,10 @@ use super::super::ridge;
 use super::call::Layout;
 use super::products::{Eight, Four, times};
 use crate::basis::{Basis, MAX_ORDER};
-use crate::lanes::{self, LANES};
+use crate::lanes;
 use crate::matrix::{at, halves_mut};
 use crate::real::Real;
-use crate::rows::{part, rows_mut};
+use crate::rows::{first, rows_mut};
 use heapless::Vec;
 
 /// The most candidates: one for each degree, one with every slice's own functions, one with all columns.
@@ -36,16 +36,16 @@ pub(super) fn scale(config: &Config, samples: &Eight) -> Eight {
 }
 
 /// Columns of a fit, in this order, so that each candidate is a prefix: the constant and the pixels' axes, which follow
-/// the signal and correct nothing; control functions and basis, degree by degree; and low-degree functions times each
-/// axis, for integrands that change across the block.
+/// the signal and correct nothing; the basis, degree by degree; and low-degree functions times each axis, for
+/// integrands that change across the block.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Terms {
     /// Axes along which the pixels differ.
     pub(super) axes: usize,
-    /// Control functions and basis.
+    /// Of the basis.
     pub(super) functions: usize,
-    /// Where among the functions those with products begin, and how many they are.
-    pub(super) moving: (usize, usize),
+    /// How many of them, the first ones, have products with the axes.
+    pub(super) moving: usize,
     /// For each candidate the number of columns.
     pub(super) ends: Vec<usize, MAX_FITS>,
     /// Slices whose own columns are none of these, and how many columns of its own each has, for each candidate.
@@ -63,20 +63,19 @@ impl Terms {
     /// For fits to so many pixels of a call; perhaps with an edge.
     pub(super) fn new(layout: &Layout<'_>, pixels: usize, has_edges: bool) -> Self {
         let (config, shape, axes) = (layout.config, &layout.shape, layout.windows.axes());
-        let (functions, fixed) = (config.controls + shape.columns(), 1 + axes);
+        let (functions, fixed) = (shape.columns(), 1 + axes);
         let (slices, copies) = shape.slices_apart();
         if layout.is_known_alone() || functions + slices == 0 {
             return Self { axes, has_edges, ..Self::default() };
         }
         let samples = pixels.saturating_mul(layout.n);
-        let moving = (config.controls, 0);
-        let mut terms = Self { axes, functions, moving, slices, copies, has_edges, ..Self::default() };
+        let mut terms = Self { axes, functions, slices, copies, has_edges, ..Self::default() };
         // As many degrees as leave two samples to each column.
         for degree in 1..=MOVING_DEGREE.min(config.order.saturating_sub(1)).max(1) {
             let moving = shape.up_to_degree(degree);
             let columns = fixed + functions + slices * (1 + copies) + axes * (moving + slices);
             if axes > 0 && columns <= MOST_COLUMNS && 2 * columns <= samples {
-                terms.moving.1 = moving;
+                terms.moving = moving;
                 terms.has_slopes = slices > 0;
             }
         }
@@ -90,7 +89,7 @@ impl Terms {
         if !layout.is_single_fit() {
             let own = usize::from(slices > 0);
             for degree in 1..=config.order {
-                end(fixed + config.controls + shape.up_to_degree(degree), own);
+                end(fixed + shape.up_to_degree(degree), own);
             }
             end(fixed + functions, if slices > 0 { 1 + copies } else { 0 });
         }
@@ -108,7 +107,7 @@ impl Terms {
     }
 
     pub(super) fn columns(&self) -> usize {
-        self.fixed() + self.functions + self.axes * self.moving.1
+        self.fixed() + self.functions + self.axes * self.moving
     }
 
     /// Columns of sums of pixels' means: where slices are apart, as many as trends need.
@@ -136,7 +135,7 @@ impl Terms {
     pub(super) fn source(&self, own: usize) -> (usize, f32) {
         let count = self.slices as f32;
         match own.checked_sub(1) {
-            Some(copy) if copy < self.copies => (self.fixed() + self.moving.0 + copy, count),
+            Some(copy) if copy < self.copies => (self.fixed() + copy, count),
             Some(after) => (1 + after - self.copies, count * count / (count - 1.0)),
             None => (0, count * count / (count - 1.0)),
         }
@@ -144,20 +143,17 @@ impl Terms {
 
     /// The columns that change within a pixel: what the function is multiplied by, and which function it is.
     pub(super) fn changing<'p>(&self, places: &'p [Four]) -> impl Iterator<Item = (&'p Four, usize)> + use<'p> {
-        let (functions, (first, count)) = (self.functions, self.moving);
+        let (functions, moving) = (self.functions, self.moving);
         places.iter().enumerate().flat_map(move |(axis, place)| {
-            let range = if axis == 0 { 0..functions } else { first..first + count };
-            range.map(move |function| (place, function))
+            (0..if axis == 0 { functions } else { moving }).map(move |function| (place, function))
         })
     }
 
     /// Makes the products of functions with the pixels' places along each axis.
     #[inline(always)]
     pub(super) fn multiply(&self, places: &[Four], functions: &[Four], products: &mut [Four]) {
-        let (first, count) = self.moving;
-        let moving = part(functions, first, count);
-        for (products, axis) in rows_mut(products, count).zip(places.iter().skip(1)) {
-            for (out, function) in products.iter_mut().zip(moving) {
+        for (products, axis) in rows_mut(products, self.moving).zip(places.iter().skip(1)) {
+            for (out, function) in products.iter_mut().zip(functions) {
                 *out = times(function, axis);
                 lanes::keep_together();
             }
@@ -165,31 +161,16 @@ impl Terms {
     }
 
     /// The penalty of each column, relative to the strength times the number of samples.
-    pub(super) fn penalties(&self, config: &Config, basis: &Basis, out: &mut [f32]) {
+    pub(super) fn penalties(&self, basis: &Basis, out: &mut [f32]) {
         let (own, rest) = halves_mut(out, self.fixed());
         for (index, penalty) in own.iter_mut().enumerate() {
             *penalty = if index == 0 { 0.0 } else { TREND_PENALTY };
         }
         let (functions, products) = halves_mut(rest, self.functions);
-        ridge::penalties(config, basis, |_| 1.0, functions);
-        let (first, count) = self.moving;
-        let moving = part(functions, first, count);
-        for (penalty, &function) in products.iter_mut().zip(moving.iter().cycle()) {
+        basis.penalties(functions);
+        for (penalty, &function) in products.iter_mut().zip(first(functions, self.moving).iter().cycle()) {
             *penalty = MOVING_PENALTY * function;
         }
-    }
-
-    /// What is added to a column's sum of squares, `square`, for its penalty. What a control function is measured in is
-    /// its maker's choice.
-    pub(super) fn ridge(&self, column: usize, penalty: f32, scale: &Eight, square: &Eight, count: &Eight) -> Eight {
-        let mut ridge = scale.map(|scale| scale * penalty);
-        if (self.fixed()..self.fixed() + self.moving.0).contains(&column) {
-            let divisor = lanes::divisor(count);
-            for l in 0..LANES {
-                ridge[l] *= square[l] / divisor[l];
-            }
-        }
-        ridge
     }
 
     /// The penalty of a slice's own column, by those of the others and that of a function of degree 1.
