@@ -8,6 +8,7 @@ use noisefloor::control_variate::{
 };
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::{block, image};
+use noisefloor_tests::statistics::Moments;
 use proptest::prelude::*;
 
 const SHARED: [Estimator; 3] = [Estimator::Robust, Estimator::LeaveOneOut, Estimator::KFold];
@@ -176,6 +177,38 @@ fn no_correction_keeps_every_bit() {
         let config = Config { estimator, ..Config::new(2, 2, 1) };
         let estimates = image(&config, &Image::new(8, 8), Samples::new(&u, &f)).unwrap();
         assert_eq!(estimates[20].mean[0].to_bits(), f[20].to_bits(), "{estimator:?}");
+    }
+}
+
+/// Where no correction can be added up, the standard error is the plain mean's, and nothing is gained.
+#[test]
+fn no_correction_has_no_gain() {
+    let (u, n) = (points(64 * 4, 2, &mut SplitMix64::new(4)), 4);
+    let f: Vec<f32> = u.chunks(2).map(|u| 2e37 * (1.0 + u[0])).collect();
+    let estimates = image(&Config::new(2, 1, 1), &Image::new(8, 8), Samples::new(&u, &f)).unwrap();
+    let mut uncorrected = 0;
+    for (estimate, own) in estimates.iter().zip(wide(&f).chunks(n)) {
+        let own: Moments = own.iter().copied().collect();
+        if (f64::from(estimate.mean[0]) / own.mean() - 1.0).abs() < 1e-6 {
+            assert!((f64::from(estimate.std_error[0]) / own.standard_error() - 1.0).abs() < 1e-6);
+            assert_eq!(estimate.gain, 1.0);
+            uncorrected += 1;
+        }
+    }
+    assert!(uncorrected > 48, "{uncorrected}");
+}
+
+/// Noise far below the group's largest value, of which fits explain nothing: their pixels' errors are told as theirs.
+#[test]
+fn noise_far_below_one_bright_pixel() {
+    let mut rng = SplitMix64::new(6);
+    let (u, n) = (points(64 * 4, 2, &mut rng), 4);
+    let f: Vec<f32> = (0..64 * n).map(|i| if i / n == 9 { 1.0 } else { 1e-14 * rng.uniform() as f32 }).collect();
+    let estimates = image(&Config::new(2, 2, 1), &Image::new(8, 8), Samples::new(&u, &f)).unwrap();
+    for (pixel, estimate) in estimates.iter().enumerate().filter(|&(pixel, _)| pixel != 9) {
+        let own: Moments = wide(&f[pixel * n..(pixel + 1) * n]).into_iter().collect();
+        let ratio = f64::from(estimate.std_error[0]) / own.standard_error();
+        assert!(ratio > 0.8, "{pixel}: {ratio}, gain {}", estimate.gain);
     }
 }
 

@@ -274,7 +274,7 @@ impl<'a> Spreads<'a> {
         for (choice, share) in rest.iter_mut().enumerate() {
             let [spread, within] = &self.sums(channel, 1 + choice, by);
             let over = |sum: &Eight, most: &Eight, inverse: &Eight| {
-                let told = lanes::zip(sum, most, Real::min);
+                let told = no_less(&lanes::zip(sum, most, Real::min));
                 lanes::zip(&told, inverse, |told, inverse| Real::max(told * inverse, 1e-30))
             };
             let ratio = over(spread, &most, &inverse);
@@ -332,7 +332,7 @@ impl<'a> Spreads<'a> {
         let mixed = shares.iter().enumerate();
         let mixed = mixed.fold(NONE, |mixed, (choice, share)| lanes::plus_product(mixed, sum(choice), *share));
         let least = no_less(&plain);
-        let mixed = lanes::zip(&mixed, &no_more(&least), Real::min);
+        let mixed = no_less(&lanes::zip(&mixed, &no_more(&least), Real::min));
         // Behind a black box, or compilers divide a lane or two, and what else their vector holds.
         let mut ratio = black_box(lanes::zip(&mixed, &lanes::divisor(&least), |mixed, plain| mixed / plain));
         for l in 0..LANES {

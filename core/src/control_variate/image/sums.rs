@@ -221,26 +221,25 @@ impl Call<'_> {
                     variance[l] = (square[l] - total[l] * total[l] / n).max(0.0) / mean_divisor(n);
                 }
             }
-            // In no group there is no correction; nor is one that left the type's range.
             let mut mean = plain;
-            for l in 0..LANES {
-                mean[l] = if correction[l].is_finite() { plain[l] + correction[l] } else { plain[l] };
-            }
-            let mean = narrow(&mean, saturate);
             let mut told = [f64::INFINITY; LANES];
             for l in 0..LANES {
-                let has_error = error_weight[l] > 0.0;
+                // A correction that left the type's range is none.
+                let is_corrected = correction[l].is_finite();
+                mean[l] = if is_corrected { plain[l] + correction[l] } else { plain[l] };
+                out[l].gain = if is_corrected { out[l].gain } else { 1.0 };
+                let has_error = error_weight[l] > 0.0 && is_corrected;
                 if has_error && self.error_is_the_groups() {
                     told[l] = spread[l];
                 } else if self.n > 1 {
                     let ratio = if has_error { spread[l] * spread[l] } else { 1.0 };
                     // A correction that the pixel's own samples make unlikely is an error.
-                    let moved = if correction[l].is_finite() { correction[l] * correction[l] } else { 0.0 };
+                    let moved = if is_corrected { correction[l] * correction[l] } else { 0.0 };
                     let unlikely = (moved - UNLIKELY * variance[l]).max(0.0);
                     told[l] = libm::sqrt(ratio * variance[l] + unlikely);
                 }
             }
-            let error = narrow(&told, standard_error);
+            let (mean, error) = (narrow(&mean, saturate), narrow(&told, standard_error));
             for l in 0..LANES {
                 let Estimate { mean: means, std_error: errors, .. } = &mut out[l];
                 (means[channel % means.len()], errors[channel % errors.len()]) = (mean[l], error[l]);
