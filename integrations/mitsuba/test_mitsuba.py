@@ -40,6 +40,13 @@ def fill(keys, width, height, samples, frame=0, first=0, white=False, scramble=F
     return np.concatenate(u, -1).reshape(width * height, samples, 2 * len(keys))
 
 
+def drawn(state, count):
+    """nf_sampler_draw."""
+    part, value = _c.u32(count), (ctypes.c_float * count)()
+    status = _c.sampler_fill(_c.address(state), _c.address(part), 1, 1, 1, 1, _c.address(value), count)
+    return list(value) if status == 0 else _c.message(status)
+
+
 def sampler(width, height=0, **more):
     return mi.load_dict({"type": "noisefloor", "width": width, "height": height or width, **more})
 
@@ -110,18 +117,16 @@ class Recorded(unittest.TestCase):
             state = mi.UInt32(domain), mi.UInt32(17), mi.UInt32(40001), dr.brev(mi.UInt32(index))
             u = [*_sampler.draw(*state, False, scrambled, few), *_sampler.draw(*state, True, scrambled, few)]
             for k, (d, i) in enumerate(zip(domain, index)):
-                value = (ctypes.c_float * 4)()
-                _c.sampler_draw(_c.Sampler(int(d), int(i), 17, 40001, int(scrambled)), 4, _c.address(value))
-                self.assertEqual([v[k] for v in u], list(value))
+                expected = drawn(_c.Sampler(int(d), int(i), 17, 40001, int(scrambled)), 4)
+                self.assertEqual([v[k] for v in u], expected)
 
     def test_more_samples_than_were_said(self):
         one = sampler(2, 1, sample_count=16)
         one.seed(0, 2 * 16)
         for _ in range(5):
             one.advance()
-        expected = (ctypes.c_float * 2)()
-        _c.sampler_draw(_c.sampler_domain(_c.sampler_pixel(1, 0, 0, 95), 0), 2, _c.address(expected))
-        self.assertEqual([float(v[-1]) for v in np.array(one.next_2d())], list(expected))
+        expected = drawn(_c.sampler_domain(_c.sampler_pixel(1, 0, 0, 95), 0), 2)
+        self.assertEqual([float(v[-1]) for v in np.array(one.next_2d())], expected)
 
     def test_film_and_lens_are_four_numbers_of_one_domain(self):
         one = sampler(9, 7, sample_count=16, lens=True)
