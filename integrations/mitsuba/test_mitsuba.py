@@ -341,7 +341,10 @@ class Fits(unittest.TestCase):
         return scene
 
     def test_order_0_is_the_plain_picture(self):
-        for scene, inner in ((mi.cornell_box(), "path"), (self.lens(), "path"), (self.fog(), "volpath")):
+        # By `direct`, light from outside is no part of alpha, but of the picture.
+        outside = mi.cornell_box() | {"light": {"type": "constant"}}
+        for scene, inner in ((mi.cornell_box(), "path"), (self.lens(), "path"), (self.fog(), "volpath"),
+                             (outside, {"type": "direct"})):  # fmt: skip
             plain, fitted = self.fits(scene=scene, inner=inner, order=0, known=False)
             for spp in (1, 4):
                 expected = np.array(mi.render(plain, spp=spp, seed=3))
