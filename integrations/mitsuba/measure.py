@@ -1,7 +1,7 @@
 """What the report's chapter is made of: times.csv, gradients.csv, fits.csv, errors.csv and pictures.png in a folder.
 
 python3 measure.py FOLDER [--parts times,gradients,fits,errors] [--scenes cornell,...] [--size 128] [--seeds 32]
-    [--many 8] [--reference 4096] [--frames 4096] [--rounds 15] [--scalar build]
+    [--reference 4096] [--frames 4096] [--rounds 15] [--scalar build]
 """
 
 import argparse
@@ -113,7 +113,7 @@ def measure_errors(options, out, pictures):
             for sampler, scene in loaded.items():
                 if not takes(scene, spp):
                     continue
-                for seed in range(options.seeds if spp < 64 else options.many):
+                for seed in range(options.seeds):
                     image = render(scene, spp, FIRST + seed)
                     colour = np.ascontiguousarray(image, np.float32)
                     clean = mitsuba_oidn.denoise(colour, albedo=albedo, normal=normal, hdr=True, clean_aux=True)
@@ -214,7 +214,7 @@ def main():
     parser.add_argument("--parts", default="times,gradients,fits,errors")
     parser.add_argument("--scenes", default=",".join(scenes.SCENES))
     parser.add_argument("--scalar", metavar="FOLDER", help="where noisefloor_scalar was built: times it, too")
-    defaults = {"size": 128, "seeds": 32, "many": 8, "reference": 4096, "frames": 4096, "rounds": 15}
+    defaults = {"size": 128, "seeds": 32, "reference": 4096, "frames": 4096, "rounds": 15}
     for option, default in defaults.items():
         parser.add_argument(f"--{option}", type=int, default=default)
     options = parser.parse_args()

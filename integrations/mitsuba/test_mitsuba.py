@@ -2,6 +2,7 @@
 recorded RGB one."""
 
 import ctypes
+import gc
 import itertools
 import os
 import pathlib
@@ -10,12 +11,13 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-VARIANTS = os.environ.get("NOISEFLOOR_VARIANTS", "llvm_ad_rgb,llvm_ad_spectral,scalar_rgb").split(",")
+VARIANTS = os.environ.get("NOISEFLOOR_VARIANTS", "llvm_ad_rgb,llvm_ad_spectral").split(",")
 mi.set_variant(VARIANTS[0])
 mi.set_log_level(mi.LogLevel.Error)
 import scenes
@@ -36,6 +38,13 @@ def fill(keys, width, height, samples, frame=0, first=0, white=False, scramble=F
     source = noisefloor.Sampler(frame=frame, white=white, seed=int(scramble))
     u = [source.domain(key).image(width, height, samples, 2, first=first) for key in keys]
     return np.concatenate(u, -1).reshape(width * height, samples, 2 * len(keys))
+
+
+def drawn(state, count):
+    """nf_sampler_draw."""
+    part, value = _c.u32(count), (ctypes.c_float * count)()
+    status = _c.sampler_fill(_c.address(state), _c.address(part), 1, 1, 1, 1, _c.address(value), count)
+    return list(value) if status == 0 else _c.message(status)
 
 
 def sampler(width, height=0, **more):
@@ -108,18 +117,16 @@ class Recorded(unittest.TestCase):
             state = mi.UInt32(domain), mi.UInt32(17), mi.UInt32(40001), dr.brev(mi.UInt32(index))
             u = [*_sampler.draw(*state, False, scrambled, few), *_sampler.draw(*state, True, scrambled, few)]
             for k, (d, i) in enumerate(zip(domain, index)):
-                value = (ctypes.c_float * 4)()
-                _c.sampler_draw(_c.Sampler(int(d), int(i), 17, 40001, int(scrambled)), 4, _c.address(value))
-                self.assertEqual([v[k] for v in u], list(value))
+                expected = drawn(_c.Sampler(int(d), int(i), 17, 40001, int(scrambled)), 4)
+                self.assertEqual([v[k] for v in u], expected)
 
     def test_more_samples_than_were_said(self):
         one = sampler(2, 1, sample_count=16)
         one.seed(0, 2 * 16)
         for _ in range(5):
             one.advance()
-        expected = (ctypes.c_float * 2)()
-        _c.sampler_draw(_c.sampler_domain(_c.sampler_pixel(1, 0, 0, 95), 0), 2, _c.address(expected))
-        self.assertEqual([float(v[-1]) for v in np.array(one.next_2d())], list(expected))
+        expected = drawn(_c.sampler_domain(_c.sampler_pixel(1, 0, 0, 95), 0), 2)
+        self.assertEqual([float(v[-1]) for v in np.array(one.next_2d())], expected)
 
     def test_film_and_lens_are_four_numbers_of_one_domain(self):
         one = sampler(9, 7, sample_count=16, lens=True)
@@ -208,17 +215,43 @@ class Recorded(unittest.TestCase):
         one.seed(5)
         np.testing.assert_array_equal(np.array(one.next_1d()), fill([0], 9, 7, 4, 5).reshape(-1, 2)[:, 0])
 
-    def test_after_a_film_has_grown(self):
+    def test_a_film_that_changes_is_followed(self):
+        scene = box(width=16, height=8)
+        one, parameters = scene.sensors()[0].sampler(), mi.traverse(scene)
+        # Smaller by whole samples a pixel, of the same area, and larger.
+        for width, height in ((8, 4), (4, 8), (20, 12)):
+            parameters["sensor.film.size"] = [width, height]
+            parameters.update()
+            expected = fill([0], width, height, 4, 3).reshape(-1, 2)[:, 0]
+            for it in (one.clone(), one.fork(), one):
+                it.seed(3, width * height * 4)
+                np.testing.assert_array_equal(np.array(it.next_1d()), expected)
+
+    def test_samplers_keep_no_film_alive(self):
+        gc.collect()
+        before, scene = len(_sampler._films), box()
+        self.assertGreater(len(_sampler._films), before)
+        del scene
+        gc.collect()
+        self.assertLessEqual(len(_sampler._films), before)
+
+    def test_a_size_that_was_given_is_kept(self):
         one = sampler(8, sample_count=4)
         one.seed(3, 8 * 8 * 4)
         # Four times as many pixels would be four times as many samples of each.
-        with self.assertRaisesRegex(ValueError, "after a film's size has changed"):
+        with self.assertRaisesRegex(ValueError, "for 8 x 8 pixels, and 1024 samples are no pass .* 4 samples a pixel"):
             one.seed(3, 16 * 16 * 4)
         one.seed(3, 8 * 8 * 4)
         one.size = 16, 16
         other = one.clone()
         other.seed(3, 16 * 16 * 4)
         np.testing.assert_array_equal(np.array(other.next_1d()), fill([0], 16, 16, 4, 3).reshape(-1, 2)[:, 0])
+
+    def test_samples_of_no_film_are_refused(self):
+        clone = box(width=16, height=16).sensors()[0].sampler().clone()
+        with self.assertRaisesRegex(ValueError, "100000000 samples .* whole film .* use another, independ") as refused:
+            clone.seed(0, 10**8)
+        self.assertNotIn("prepare", str(refused.exception))
 
     def test_an_unknown_width_is_refused(self):
         for width in (0, 7):
@@ -287,12 +320,12 @@ class Fits(unittest.TestCase):
         mi.set_variant(VARIANTS[0])
         nf.register()
 
-    def fits(self, depth=6, width=24, height=20, scene=None, inner="path", **more):
+    def fits(self, depth=6, width=24, height=20, scene=None, inner="path", film=(), **more):
         scene = scene or mi.cornell_box()
-        film = {"type": "hdrfilm", "width": width, "height": height, "rfilter": {"type": "box"}}
-        film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
+        pixels = {"type": "hdrfilm", "width": width, "height": height, "rfilter": {"type": "box"}}
+        film = pixels | {"pixel_format": "luminance" if mi.is_monochromatic else "rgb"} | dict(film)
         scene["sensor"] = {**scene["sensor"], "film": film, "sampler": {"type": "noisefloor"}}
-        scene["integrator"] = {"type": inner, "max_depth": depth}
+        scene["integrator"] = {"type": inner, "max_depth": depth} if isinstance(inner, str) else inner
         plain = nf.prepare(mi.load_dict(scene))
         scene["integrator"] = {"type": "noisefloor_fits", "inner": scene["integrator"], **more}
         return plain, nf.prepare(mi.load_dict(scene))
@@ -308,11 +341,64 @@ class Fits(unittest.TestCase):
         return scene
 
     def test_order_0_is_the_plain_picture(self):
-        for scene, inner in ((mi.cornell_box(), "path"), (self.lens(), "path"), (self.fog(), "volpath")):
+        # By `direct`, light from outside is no part of alpha, but of the picture.
+        outside = mi.cornell_box() | {"light": {"type": "constant"}}
+        for scene, inner in ((mi.cornell_box(), "path"), (self.lens(), "path"), (self.fog(), "volpath"),
+                             (outside, {"type": "direct"})):  # fmt: skip
             plain, fitted = self.fits(scene=scene, inner=inner, order=0, known=False)
             for spp in (1, 4):
                 expected = np.array(mi.render(plain, spp=spp, seed=3))
                 np.testing.assert_allclose(np.array(mi.render(fitted, spp=spp, seed=3)), expected, rtol=1e-4, atol=1e-5)
+
+    def test_films_of_any_format(self):
+        scene = mi.cornell_box()
+        del scene["back"]  # so that there is an alpha
+        crop = {"crop_offset_x": 3, "crop_offset_y": 2, "crop_width": 9, "crop_height": 7}
+        for channels, film in ((4, {"pixel_format": "rgba", **crop}), (3, {"pixel_format": "xyz"}),
+                               (1, {"pixel_format": "luminance"})):  # fmt: skip
+            plain, fitted = self.fits(scene=dict(scene), film=film, order=0, known=False)
+            expected, found = (np.array(mi.render(s, seed=3)) for s in (plain, fitted))
+            self.assertEqual(found.shape[2], channels)
+            np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-5)
+            ours, theirs = (np.array(s.sensors()[0].film().bitmap()) for s in (fitted, plain))
+            np.testing.assert_allclose(ours, theirs, rtol=1e-4, atol=1e-5)
+        self.assertEqual(fitted.integrator().render(fitted, develop=False).shape, (0,))
+        self.assertGreater(np.array(fitted.sensors()[0].film().bitmap()).mean(), 0)
+
+    def test_a_film_that_changes_is_followed(self):
+        _, fitted = self.fits(width=16, height=16)
+        _, expected = self.fits(width=8, height=8)
+        parameters = mi.traverse(fitted)
+        parameters["sensor.film.size"] = [8, 8]
+        parameters.update()
+        np.testing.assert_array_equal(*(np.array(mi.render(s, spp=4)) for s in (fitted, expected)))
+
+    def test_samples_that_are_not_finite_count_as_0(self):
+        class Spoilt(mi.SamplingIntegrator):
+            def __init__(self, props):
+                super().__init__(props)
+                self.path, self.values = props["path"], props["values"].split()
+
+            def sample(self, scene, sampler, ray, medium=None, active=True):
+                radiance, valid, more = self.path.sample(scene, sampler, ray, medium, active)
+                k = dr.arange(mi.UInt32, dr.width(radiance))
+                for place, value in enumerate(self.values):
+                    radiance = dr.select(k == 1000 + place, float(value), radiance)
+                return radiance, valid, more
+
+            def aov_names(self):
+                return []
+
+        mi.register_integrator("spoilt", lambda props: Spoilt(props))
+        spoilt, clean = ({"type": "spoilt", "values": values, "path": {"type": "path"}}
+                         for values in ("nan inf", "0 0"))  # fmt: skip
+        _, fitted = self.fits(inner=spoilt)
+        with unittest.mock.patch("mitsuba.Log") as log:
+            found = np.array(mi.render(fitted, spp=4))
+        said = [call.args for call in log.call_args_list if call.args[0] == mi.LogLevel.Warn]
+        self.assertEqual(len(said), 1)
+        self.assertIn(" 2 samples were not finite", said[0][1])
+        np.testing.assert_array_equal(found, np.array(mi.render(self.fits(inner=clean)[1], spp=4)))
 
     def test_kept_numbers_are_those_that_were_drawn(self):
         one = sampler(9, 7, sample_count=4)
@@ -384,15 +470,19 @@ class Fits(unittest.TestCase):
 
     def test_what_it_cannot_do_is_refused(self):
         scene = mi.cornell_box()
-        scene["integrator"] = {"type": "noisefloor_fits", "inner": scene["integrator"]}
-        for film, kind, why in (
-            ({"rfilter": {"type": "gaussian"}}, "noisefloor", "box filter"),
-            ({"rfilter": {"type": "box"}}, "independent", "sampler must be noisefloor"),
+        path = scene["integrator"]
+        aov = {"type": "aov", "aovs": "depth:depth,n:sh_normal"}
+        for rfilter, kind, inner, spp, why in (
+            ("gaussian", "noisefloor", path, 1, "box filter"),
+            ("box", "independent", path, 1, "sampler must be noisefloor, not IndependentSampler"),
+            ("box", "noisefloor", aov, 1, "AOVIntegrator has further channels, depth.T, n.X, n.Y, n.Z"),
+            ("box", "noisefloor", path, 2**26, "4294967296 samples; one frame has at most"),
         ):
-            scene["sensor"]["film"].update(width=8, height=8, **film)
+            scene["sensor"]["film"].update(width=8, height=8, rfilter={"type": rfilter})
             scene["sensor"]["sampler"] = {"type": kind}
+            scene["integrator"] = {"type": "noisefloor_fits", "inner": inner}
             with self.assertRaises((ValueError, RuntimeError)) as refused:
-                mi.render(nf.prepare(mi.load_dict(scene)), spp=1)
+                mi.render(nf.prepare(mi.load_dict(scene)), spp=spp)
             self.assertIn(why, f"{refused.exception} {refused.exception.__cause__}")
         for inner, why in (({}, "holds one integrator, not 0"), ({"inner": {"type": "prb"}}, "such as path, not PRB"),
                            ({"inner": {"type": "ptracer"}}, "such as path, not")):  # fmt: skip
@@ -410,19 +500,10 @@ class OtherVariants(unittest.TestCase):
             ours, theirs = (pictures(s, 12, 4).mean((1, 2, 3)) for s in (scene, plain))
             self.assertLess(abs(z_of_means(ours, theirs)), LIMIT)
 
-    def test_scalar_draws_are_the_librarys(self):
+    def test_in_scalar_variants_the_other_plugin_is_named(self):
         mi.set_variant("scalar_rgb")
-        nf.register()
-        one = mi.load_dict({"type": "noisefloor", "sample_count": 2})
-        one.seed(70000)
-        one.next_1d()
-        one.advance()
-        one.next_1d()
-        expected = (ctypes.c_float * 2)()
-        _c.sampler_draw(_c.sampler_domain(_c.sampler_white(4464, 1, 0, 1), 1), 2, _c.address(expected))
-        other = one.clone()
-        self.assertEqual(list(one.next_2d()), list(expected))
-        self.assertEqual(list(other.next_2d()), list(expected))
+        with self.assertRaisesRegex(ValueError, "scalar_rgb is set.*noisefloor_scalar"):
+            nf.register()
 
 
 class Scalar(unittest.TestCase):

@@ -159,7 +159,6 @@ nf_sampler nf_sampler_pixel(uint32_t, uint32_t, uint32_t, uint32_t);
 nf_sampler nf_sampler_white(uint32_t, uint32_t, uint32_t, uint32_t);
 nf_sampler nf_sampler_domain(nf_sampler, uint32_t);
 nf_sampler nf_sampler_scramble(nf_sampler, uint32_t);
-void nf_sampler_draw(nf_sampler, uint32_t, float *);
 const uint32_t *nf_sampler_table(void);
 nf_status nf_sampler_fill(const nf_sampler *, const uint32_t *, size_t, uint32_t, uint32_t, uint32_t, float *, size_t);
 void nf_rng_seed(nf_rng *, uint64_t);

@@ -11,6 +11,8 @@ from . import _arrays, _c
 
 #: Estimates made in one call: the interpreter sees an interrupt between two.
 CHUNK = 1 << 15
+#: As many numbers as are copied for one call, where arrays are broadcast.
+COPIED = 1 << 24
 
 
 class Estimate(NamedTuple):
@@ -80,18 +82,25 @@ def estimate(
         leading = numpy.broadcast_shapes(u.shape[:-2], f.shape[: f.ndim - 1 - values])
     except ValueError:
         raise ValueError(f"the leading dimensions of u {u.shape} and f {f.shape} do not broadcast") from None
-    u = numpy.ascontiguousarray(numpy.broadcast_to(u, leading + (n, d)))
-    f = numpy.ascontiguousarray(numpy.broadcast_to(f, leading + own))
+    wide = numpy.broadcast_to(u, leading + (n, d)), numpy.broadcast_to(f, leading + own)
     out = numpy.empty(leading, _c.ESTIMATE)
     workspace = _c.workspace(_c.cv_workspace_size(_c.address(config), n))
-    steps = 4 * n * d, 4 * n * config.channels, _c.ESTIMATE.itemsize
     samples = _c.Samples(n=n)
-    for first in range(0, out.size, CHUNK):
-        some = min(CHUNK, out.size - first)
-        at = [_c.data(array) + first * step for array, step in zip((u, f, out), steps)]
-        samples.u, samples.f = at[:2]
+    each = CHUNK
+    if not all(array.flags.c_contiguous for array in wide):
+        each = min(CHUNK, max(1, COPIED // (n * (d + config.channels))))
+    for first in range(0, out.size, each):
+        some = range(first, min(first + each, out.size))
+        # Names keep copies alive during the call.
+        u, f = (_integrals(array, len(leading), some) for array in wide)
+        samples.u, samples.f = _c.data(u), _c.data(f)
         status = _c.cv_estimate(
-            _c.address(config), _c.address(samples), some, _c.data(workspace), workspace.nbytes, at[2]
+            _c.address(config),
+            _c.address(samples),
+            len(some),
+            _c.data(workspace),
+            workspace.nbytes,
+            _c.data(out) + first * out.itemsize,
         )
         if status:
             _refuse(status, *given, config)
@@ -227,6 +236,13 @@ def configure(order, estimator, basis, d, dims, slices, stratified, channels=1):
     if words:
         raise ValueError(f"order {order} in {config.dims} dims with {slices} slices: {words}")
     return config
+
+
+def _integrals(array, dims, some):
+    """Those of the integrals, counted over the first `dims` axes, one after the other: copied if they are broadcast."""
+    if array.flags.c_contiguous:
+        return array.reshape(-1, *array.shape[dims:])[some.start : some.stop]
+    return numpy.ascontiguousarray(array[numpy.unravel_index(numpy.arange(some.start, some.stop), array.shape[:dims])])
 
 
 def _refuse(status, u, f, config):

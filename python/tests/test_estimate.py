@@ -3,6 +3,7 @@
 import math
 import threading
 import time
+import tracemalloc
 import warnings
 
 import hypothesis
@@ -63,6 +64,29 @@ def test_leading_dimensions_broadcast(shapes, dims, n, channels):
         one = noisefloor.estimate(wide_u[at], wide_f[at], order=1, channels=channels > 0)
         for part, whole in zip(one, estimate):
             assert numpy.array_equal(part, numpy.asarray(whole)[at], equal_nan=True)
+
+
+def test_what_is_broadcast_is_copied_in_parts(monkeypatch):
+    u, f = samples(256, 4), samples(6, 50, 256, seed=2)
+    for shared, other in ((u, f), (samples(50, 256, 4), f), (samples(6, 1, 256, 4), f), (f[..., None], f[0, 0])):
+        wide = [
+            numpy.ascontiguousarray(numpy.broadcast_to(part, (6, 50) + part.shape[part.ndim - own :]))
+            for part, own in ((shared, 2), (other, 1))
+        ]
+        expected = noisefloor.estimate(*wide, order=1)
+        for chunk, copied in ((1 << 15, 1 << 24), (7, 1 << 24), (1 << 15, 5000), (1 << 15, 1)):
+            monkeypatch.setattr(noisefloor._estimate, "CHUNK", chunk)
+            monkeypatch.setattr(noisefloor._estimate, "COPIED", copied)
+            for part, whole in zip(noisefloor.estimate(shared, other, order=1), expected):
+                assert numpy.array_equal(part, whole)
+    f = numpy.zeros((10_000, 256), numpy.float32)
+    monkeypatch.setattr(noisefloor._estimate, "COPIED", 1 << 18)
+    tracemalloc.start()
+    noisefloor.estimate(u, f, order=0)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    # Copies of u for all of them would have 41 MB; what is there beside has a few.
+    assert peak < 20e6
 
 
 @hypothesis.given(

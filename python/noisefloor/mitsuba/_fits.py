@@ -61,11 +61,36 @@ def kept(sensor, lights, width, height, spp, seed, white=False, scramble=False):
     return numpy.stack([within, u[..., 1], u[..., 0]], -1)
 
 
-def _check(film, sampler, scene):
+def on_film(film, mean, alpha):
+    """The picture as the film has it, whose pixels get these means."""
+    film.prepare([])
+    block, at = film.create_block(), _middles(film) - 0.5
+    channels = [mi.Float(numpy.ascontiguousarray(channel).ravel()) for channel in numpy.moveaxis(mean, -1, 0)]
+    values = channels if len(channels) == 3 else 3 * channels
+    if mi.has_flag(film.flags(), mi.FilmFlags.Alpha):
+        values.append(mi.Float(alpha.ravel()))
+    block.put(at, [*values, mi.Float(1)])
+    film.put_block(block)
+    return film.develop()
+
+
+def _check(film, sampler, scene, inner, count):
     if not film.rfilter().is_box_filter() or film.sample_border():
         raise ValueError("noisefloor_fits: the film needs a box filter, and no sample_border")
-    if not hasattr(sampler, "size"):
-        raise ValueError("noisefloor_fits: the sensor's sampler must be noisefloor")
+    if mi.has_flag(film.flags(), mi.FilmFlags.Special):
+        raise ValueError(f"noisefloor_fits: the film must be one of colours such as hdrfilm, not {film.class_name()}")
+    if not hasattr(sampler, "follow"):
+        raise ValueError(f"noisefloor_fits: the sensor's sampler must be noisefloor, not {sampler.class_name()}")
+    if inner.aov_names():
+        raise ValueError(
+            f"noisefloor_fits: {inner.class_name()} has further channels, {', '.join(inner.aov_names())}. Give it an "
+            "integrator of light alone, path say, and render them by themselves"
+        )
+    if count >= 1 << 32:
+        raise ValueError(
+            f"noisefloor_fits: {count} samples; one frame has at most 2^32 - 1. Take fewer for each pixel, and the "
+            "mean of frames of several seeds"
+        )
     if mi.is_spectral or mi.is_polarized:
         raise ValueError(f"noisefloor_fits: {mi.variant()} has other numbers than RGB and monochromatic variants")
     if not 1 <= len(scene.emitters()) <= 64:
@@ -92,28 +117,35 @@ def kind():
             self.unknown = ""
 
         def samples(self, scene, sensor, sampler):
-            """Values of all samples, (height, width, samples, channels)."""
+            """Values of all samples, (height, width, samples, channels), and the pixels' alpha."""
             film, spp = sensor.film(), sampler.sample_count()
             (width, height), offset = film.crop_size(), mi.ScalarPoint2f(film.crop_offset())
             pixel = dr.arange(mi.UInt32, width * height * spp) // spp
             corner = mi.Point2f(pixel % width, pixel // width) + offset
             ray, weight = _rays(sensor, corner + sampler.next_2d(), sampler)
             radiance, valid, _ = self.inner.sample(scene, sampler, ray, sensor.get_medium())
-            value = dr.select(valid, weight * radiance, 0)
-            return numpy.array(value).T.reshape(height, width, spp, -1)
+            value = numpy.array(weight * radiance).T.reshape(height, width, spp, -1)
+            # Others would take the whole picture with them.
+            wrong = ~numpy.isfinite(value).all(-1)
+            if wrong.any():
+                mi.Log(mi.LogLevel.Warn, f"noisefloor_fits: {wrong.sum()} samples were not finite, and count as 0")
+                value[wrong] = 0
+            # An integrator may say one thing of all samples.
+            valid = numpy.broadcast_to(numpy.array(valid), width * height * spp)
+            return value, valid.reshape(height, width, spp).mean(-1, dtype=numpy.float32)
 
         def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
             sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
-            film, original = sensor.film(), sensor.sampler()
-            _check(film, original, scene)
-            sampler = original.clone()
+            film, sampler = sensor.film(), sensor.sampler().clone()
             if spp:
                 sampler.set_sample_count(spp)
             spp, (width, height) = sampler.sample_count(), film.crop_size()
+            _check(film, sampler, scene, self.inner, width * height * spp)
+            sampler.follow(sensor)
             sampler.seed(seed, width * height * spp)
-            f = self.samples(scene, sensor, sampler)
+            f, alpha = self.samples(scene, sensor, sampler)
             lights, first = equally_likely(scene), int(mi.UInt32(seed)[0])
-            u = kept(sensor, lights, width, height, spp, first, original.white, original.scramble)
+            u = kept(sensor, lights, width, height, spp, first, sampler.white, sampler.scramble)
             middle = scene.ray_intersect(_rays(sensor, _middles(film))[0])
             more = {}
             if self.known:
@@ -124,7 +156,11 @@ def kind():
                 u, f, surfaces=surfaces(middle).reshape(height, width), order=self.order, slices=lights,
                 stride=self.stride, stratified=True, channels=True, threads=max(dr.thread_count(), 1), **more,
             )  # fmt: skip
-            return mi.TensorXf(found.mean)
+            picture = on_film(film, found.mean, alpha)
+            if evaluate:
+                film.schedule_storage()
+                dr.eval(picture)
+            return picture if develop else mi.TensorXf()
 
         def aov_names(self):
             return []

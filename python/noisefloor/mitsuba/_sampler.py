@@ -1,10 +1,10 @@
 """The plugin `noisefloor`, a sampler.
 
-In LLVM and CUDA variants the draws are recorded by Dr.Jit, with the bits of nf_sampler_draw(); the library gives the
-table alone. In scalar variants every draw is a call of the library.
+The draws are recorded by Dr.Jit, with the bits of nf_sampler_draw(); the library gives the table alone.
 """
 
 import ctypes
+import weakref
 
 import drjit as dr
 import mitsuba as mi
@@ -20,6 +20,9 @@ COLUMNS = (0x80000000, 0x40000000, 0xA0000000, 0xD0000000, 0x68000000, 0xFC00000
 
 # By variant. Not an attribute of the samplers: recorded loops would take it for a part of their state.
 _tables = {}
+
+# By sampler; not attributes, either. Films hold no samplers, so that nothing is kept alive in a circle.
+_films = weakref.WeakKeyDictionary()
 
 
 def table() -> "mi.UInt32":
@@ -108,7 +111,15 @@ def _pair(pixel, first, few):
     return [v ^ ((((pixel << 8) | (v >> 24)) * factor) >> 8) for v, factor in zip(values, FINE)]
 
 
-def _jit_sampler():
+def _size(film):
+    """How many pixels get samples, those of the border included."""
+    border = 2 * film.rfilter().border_size() if film.sample_border() else 0
+    return tuple(int(length) + border for length in film.crop_size())
+
+
+def kind():
+    """The class of samplers of the variant that is set."""
+
     class NoisefloorSampler(mi.Sampler):
         """Dimensions are counted, and the count is the domain's key; the seed is the frame. With a lens the place on
         the film and that on the lens, the first two requests, are four numbers of one domain."""
@@ -121,6 +132,11 @@ def _jit_sampler():
             self.per_wave = self.most = 1
             self._clear()
 
+        def follow(self, sensor):
+            """The sensor's film says from now on how large it is."""
+            _films[self] = sensor.film()
+            self.size, self.lens = _size(sensor.film()), sensor.needs_aperture_sample()
+
         def _clear(self):
             self.x, self.y, self.index, self.base, self.dimension = (mi.UInt32(0) for _ in range(5))
             self.requests = 0  # right outside of recorded loops only
@@ -128,16 +144,25 @@ def _jit_sampler():
         def seed(self, seed, wavefront_size=2**32 - 1):
             super().seed(seed, wavefront_size)
             self._clear()
+            film = _films.get(self)
+            if film is not None:
+                self.size = _size(film)
             wavefront_size, (width, height) = self.wavefront_size(), self.size
             if wavefront_size == 1 and width * height != 1:  # how Mitsuba frees a sampler's memory
                 return
             # Not what set_samples_per_wavefront() said: integrators' calls do not come as far as here.
             self.per_wave, rest = divmod(wavefront_size, max(width * height, 1))
             if width < 1 or height < 1 or rest or self.sample_count() % self.per_wave:
+                prepare = (
+                    "Call noisefloor.mitsuba.prepare(scene) once the scene is loaded, or give the plugin the film's "
+                    "`width` and `height`. "
+                )
                 raise ValueError(
                     f"noisefloor: the sampler takes its film for {width} x {height} pixels, and {wavefront_size} "
-                    "samples are not so many times a number. Call noisefloor.mitsuba.prepare(scene) once the scene is "
-                    "loaded, and after a film's size has changed, or give the plugin `width` and `height`")  # fmt: skip
+                    f"samples are no pass over it at {self.sample_count()} samples a pixel. "
+                    f"{prepare if film is None else ''}It draws for the whole film of one sensor: for an integrator "
+                    "that also samples something else, as with `guiding_proj` False, use another, independent say"
+                )
             self.most = self.per_wave  # indices are below this
             # Opaque: as a literal it would be part of the kernel, and every seed would compile one.
             seed = mi.UInt32(seed)
@@ -162,20 +187,25 @@ def _jit_sampler():
         def schedule_state(self):
             dr.schedule(self.x, self.y, self.index, self.base, self.dimension)
 
-        def _copy(self):
+        def _copy(self, wavefront_size=0):
             props = mi.Properties()
             props["sample_count"] = self.sample_count()
             props["white"], props["scramble"], props["lens"] = self.white, self.scramble, self.lens
-            props["width"], props["height"] = self.size
-            return type(self)(props)
+            other = type(self)(props)
+            if wavefront_size:
+                # This comes to seed() above, which would refuse the number where the film has changed since.
+                other.size = wavefront_size, 1
+                mi.Sampler.seed(other, 0, wavefront_size)
+            other.size = self.size
+            if self in _films:
+                _films[other] = _films[self]
+            return other
 
         def fork(self):
             return self._copy()
 
         def clone(self):
-            other = self._copy()
-            if self.wavefront_size():
-                mi.Sampler.seed(other, 0, self.wavefront_size())
+            other = self._copy(self.wavefront_size())
             other.per_wave = self.per_wave
             # Arrays of their own: a loop that changes one sampler must not change the other.
             for name in ("x", "y", "index", "base", "dimension"):
@@ -202,63 +232,3 @@ def _jit_sampler():
             return f"NoisefloorSampler[sample_count={self.sample_count()}, size={self.size}, {options}]"
 
     return NoisefloorSampler
-
-
-def _scalar_sampler():
-    class NoisefloorSampler(mi.Sampler):
-        """A scalar renderer says a seed, but not which pixel: so every pixel is well sampled, but nothing is arranged
-        across pixels. nf_sampler_white()."""
-
-        def __init__(self, props):
-            super().__init__(props)
-            self.number, self.index, self.dimension = 0, 0, 0
-            self._begin()
-
-        def _begin(self):
-            self.state = _c.sampler_white(self.number & 0xFFFF, self.number >> 16, 0, self.index)
-            self.dimension = 0
-
-        def seed(self, seed, wavefront_size=1):
-            self.number, self.index = seed & 0xFFFFFFFF, 0
-            self._begin()
-
-        def advance(self):
-            self.index += 1
-            self._begin()
-
-        def schedule_state(self):
-            pass
-
-        def fork(self):
-            props = mi.Properties()
-            props["sample_count"] = self.sample_count()
-            return type(self)(props)
-
-        def clone(self):
-            other = self.fork()
-            other.number, other.index = self.number, self.index
-            other._begin()
-            other.dimension = self.dimension
-            return other
-
-        def _draw(self, count):
-            u = (ctypes.c_float * 2)()
-            _c.sampler_draw(_c.sampler_domain(self.state, self.dimension), 2, _c.address(u))
-            self.dimension += count
-            return u
-
-        def next_1d(self, active=True):
-            return self._draw(1)[0]
-
-        def next_2d(self, active=True):
-            return mi.Point2f(*self._draw(2))
-
-        def to_string(self):
-            return f"NoisefloorSampler[sample_count={self.sample_count()}, scalar]"
-
-    return NoisefloorSampler
-
-
-def kind():
-    """The class of samplers of the variant that is set."""
-    return _jit_sampler() if mi.variant().startswith(("llvm", "cuda")) else _scalar_sampler()

@@ -8,14 +8,14 @@ use std::path::PathBuf;
 use xtask::renderers;
 
 /// One scene: the kernels of each take seconds to compile.
-const QUICK: &str = "--scenes cornell --size 32 --seeds 3 --many 2 --reference 512 --frames 16 --rounds 3";
+const QUICK: &str = "--scenes cornell --size 32 --seeds 3 --reference 512 --frames 16 --rounds 3";
 const PLAIN: &str = "independent";
 const DEFAULT: &str = "noisefloor";
 /// Samples per pixel of the reference of the gradients.
 const REFERENCE: &str = "256";
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
-    // What was measured before, by hand: it takes a quarter of an hour.
+    // What was measured before, by hand: it takes more than twenty minutes.
     let measured = std::env::var_os("NOISEFLOOR_MITSUBA").map(PathBuf::from);
     let scratch = tempfile::tempdir()?;
     let folder = measured.clone().unwrap_or_else(|| scratch.path().to_owned());
