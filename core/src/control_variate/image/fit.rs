@@ -6,7 +6,9 @@
 use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED, blocks};
 use super::call::Layout;
-use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only, product};
+use super::products::{
+    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, minus, only, product, sums_to,
+};
 use super::slices::Apart;
 use super::terms::{MAX_FITS, SINGULAR, Terms, scale};
 use crate::arena::Arena;
@@ -39,11 +41,11 @@ pub(super) struct Fits<'a> {
     system: Sums<'a>,
     /// Sums of the pixels' means.
     between: Sums<'a>,
-    /// Of each value and candidate.
+    /// Of each value and candidate; where pixels have one sample those of the fixed columns alone.
     coefficients: &'a mut [Eight],
     /// 1 / D.
     pivots: &'a mut [Eight],
-    /// L^-1 of the fixed columns of the unit matrix.
+    /// D^-1 L^-1 of the fixed columns of the unit matrix.
     units: &'a mut [Eight],
     /// L^-1 of a block's columns.
     solved: &'a mut [Four],
@@ -87,7 +89,6 @@ impl<'a> Fits<'a> {
     #[inline(always)]
     pub(super) fn leave_own(&mut self, batch: &Batch<'_>, taken: Colours) {
         for block in batch.blocks(taken) {
-            self.apply(batch, block);
             self.leave_block(batch, block);
         }
     }
@@ -182,23 +183,38 @@ impl<'a> Fits<'a> {
         for (j, pivot) in self.pivots.iter_mut().enumerate() {
             *pivot = diagonal(gram, j);
         }
-        for (side, coefficients) in rows_mut(sides, width).zip(rows_mut(self.coefficients, self.count * width)) {
-            ldlt::forward_each::<f32, 1>(gram, 0, ldlt::one_each_mut(side));
-            for (side, pivot) in side.iter_mut().zip(self.pivots.iter()) {
-                *side = product(side, pivot);
+        let divide = |row: &mut [Eight], pivots: &[Eight]| {
+            for (out, pivot) in row.iter_mut().zip(pivots) {
+                *out = product(out, pivot);
                 lanes::keep_together();
             }
-            for (coefficients, &end) in rows_mut(coefficients, width).zip(&terms.ends) {
-                let coefficients = first_mut(coefficients, end);
-                copy(coefficients, side);
-                ldlt::backward_each(gram, coefficients);
-            }
+        };
+        for side in rows_mut(sides, width) {
+            ldlt::forward_each::<f32, 1>(gram, 0, ldlt::one_each_mut(side));
+            divide(side, self.pivots);
         }
-        if call.n == 1 {
-            for (k, unit) in rows_mut(self.units, width).enumerate() {
-                unit.iter_mut().enumerate().for_each(|(j, out)| *out = if j == k { [1.0; LANES] } else { NONE });
-                ldlt::forward_each::<f32, 1>(gram, k, ldlt::one_each_mut(unit));
+        if call.n > 1 {
+            for (side, coefficients) in rows(sides, width).zip(rows_mut(self.coefficients, self.count * width)) {
+                for (coefficients, &end) in rows_mut(coefficients, width).zip(&terms.ends) {
+                    let coefficients = first_mut(coefficients, end);
+                    copy(coefficients, side);
+                    ldlt::backward_each(gram, coefficients);
+                }
             }
+            return;
+        }
+        // Coefficient k of a candidate is e_k' L'^-1 D^-1 L^-1 r over its columns.
+        for (k, unit) in rows_mut(self.units, width).enumerate() {
+            unit.iter_mut().enumerate().for_each(|(j, out)| *out = if j == k { [1.0; LANES] } else { NONE });
+            ldlt::forward_each::<f32, 1>(gram, k, ldlt::one_each_mut(unit));
+            for (side, coefficients) in rows(sides, width).zip(rows_mut(self.coefficients, self.count * width)) {
+                sums_to(&terms.ends, unit, side, |fit, sum| {
+                    if let Some(out) = row_at_mut(coefficients, width, fit).get_mut(k) {
+                        *out = sum;
+                    }
+                });
+            }
+            divide(unit, self.pivots);
         }
     }
 
@@ -304,8 +320,9 @@ impl<'a> Fits<'a> {
         }
     }
 
-    /// Corrects a block further: the fit has seen the pixels' one sample, which is left out in closed form. With x its
-    /// columns, h = x'A^-1 x and e its residual, the fit to the others has coefficients b - A^-1 x e / (1 - h).
+    /// Corrects a block by a fit that has seen the pixels' one sample, which is left out in closed form. With x its
+    /// columns, h = x'A^-1 x and e its residual, the fit to the others has coefficients b - A^-1 x e / (1 - h). With
+    /// z = L^-1 x, h = z'D^-1 z and x'b = z'D^-1 L^-1 r, where A b = r: sums over each candidate's columns.
     #[inline(always)]
     fn leave_block(&mut self, batch: &Batch<'_>, block: usize) {
         let terms = &batch.terms;
@@ -313,24 +330,24 @@ impl<'a> Fits<'a> {
         let places = row_at(batch.places, fixed, block);
         let inside = at(batch.inside, block);
         batch.put_columns(block, self.solved);
-        ldlt::forward_each(self.system.part(0).gram, 0, self.solved);
+        let Part { gram, sides, .. } = self.system.part(0);
+        ldlt::forward_each(gram, 0, self.solved);
         let mut leverage = [NONE; AT_ONCE];
-        // A^-1 x of the fixed columns.
+        // A^-1 x of the fixed columns, and x'b of each value.
         let mut shares = [[NONE; AT_ONCE]; MAX_FIXED];
+        let mut fitted = [[NONE; AT_ONCE]; 2 * Config::MAX_CHANNELS];
         let mut begin = 0;
         for (fit, &end) in terms.ends.iter().enumerate() {
-            let (solved, pivots) = (self.solved.get_mut(begin..end), self.pivots.get(begin..end));
-            let (Some(solved), Some(pivots)) = (solved, pivots) else { return };
-            for (z, pivot) in solved.iter_mut().zip(pivots) {
+            let solved = part(self.solved, begin, end - begin);
+            for (z, pivot) in solved.iter().zip(from(self.pivots, begin)) {
                 for row in 0..AT_ONCE {
-                    let scaled = product(&z[row], pivot);
-                    leverage[row] = lanes::plus_product(leverage[row], scaled, z[row]);
-                    z[row] = scaled;
+                    leverage[row] = lanes::plus_product(leverage[row], product(&z[row], pivot), z[row]);
                 }
                 lanes::keep_together();
             }
-            for (share, unit) in shares.iter_mut().zip(rows(self.units, width)) {
-                *share = combine(*share, solved, part(unit, begin, end - begin));
+            let rows_of_sums = rows(self.units, width).chain(rows(sides, width));
+            for (sum, row) in shares.iter_mut().take(fixed).chain(fitted.iter_mut()).zip(rows_of_sums) {
+                *sum = combine(*sum, solved, from(row, begin));
             }
             begin = end;
             let mut reach = leverage;
@@ -339,22 +356,19 @@ impl<'a> Fits<'a> {
                     reach[row] = lanes::minus_product(reach[row], place[row], share[row]);
                 }
             }
-            for value in 0..self.values {
-                let trend = first(self.coefficients(terms, value, fit), fixed);
-                let trend = combine([NONE; AT_ONCE], places, trend);
+            for (value, fitted) in fitted.iter().enumerate().take(self.values) {
+                let trend = row_at(self.coefficients, width, value * self.count + fit);
+                let trend = combine([NONE; AT_ONCE], places, first(trend, fixed));
                 let mean = at(row_at(batch.means, self.values, block), value);
                 let corrections = row_at_mut(self.corrections, self.count, block * self.values + value);
                 let Some(out) = corrections.get_mut(fit) else { return };
                 for row in 0..AT_ONCE {
-                    let mut residual = NONE;
-                    for l in 0..LANES {
-                        residual[l] = mean[row][l] + out[row][l] - trend[row][l];
-                    }
+                    let residual = minus(&mean[row], &fitted[row]);
                     // A pixel that no fit is made to is corrected by the fit to all.
                     let residual = if batch.leaves_out { only(&inside[row], &residual) } else { residual };
                     for l in 0..LANES {
                         let left = Real::max(1.0 - leverage[row][l], SINGULAR);
-                        out[row][l] += reach[row][l] * (residual[l] / left);
+                        out[row][l] = trend[row][l] - fitted[row][l] + reach[row][l] * (residual[l] / left);
                     }
                     lanes::keep_together();
                 }

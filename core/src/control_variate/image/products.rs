@@ -3,8 +3,8 @@
 use crate::arena::Arena;
 use crate::basis::MAX_DIMS;
 use crate::lanes::{self, LANES, Lanes};
-use crate::matrix::{copy, halves_mut, packed_len, row_at, row_at_mut};
-use crate::rows::{halves, rows, rows_mut};
+use crate::matrix::{copy, from, halves_mut, packed_len, row_at, row_at_mut};
+use crate::rows::{halves, part, rows, rows_mut};
 
 /// A number for each of eight groups.
 pub(super) type Eight = Lanes<f32>;
@@ -101,6 +101,20 @@ pub(super) fn combine(mut sums: Four, columns: &[Four], coefficients: &[Eight]) 
         lanes::keep_together();
     }
     sums
+}
+
+/// Sums of the products of two rows up to each of `ends`.
+#[inline(always)]
+pub(super) fn sums_to(ends: &[usize], a: &[Eight], b: &[Eight], mut out: impl FnMut(usize, Eight)) {
+    let (mut sum, mut begin) = (NONE, 0);
+    for (index, &end) in ends.iter().enumerate() {
+        for (a, b) in part(a, begin, end - begin).iter().zip(from(b, begin)) {
+            sum = lanes::plus_product(sum, *a, *b);
+            lanes::keep_together();
+        }
+        out(index, sum);
+        begin = end;
+    }
 }
 
 /// Some of the colours, a bit each.

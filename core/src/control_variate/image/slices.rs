@@ -10,8 +10,9 @@
 //! nothing ([`Fits::weigh`](super::fit::Fits)). For independent samples coefficients are then too small by a
 //! factor that is known.
 
+use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED};
-use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, minus, only, plus, product};
+use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, minus, only, plus, product, sums_to};
 use super::several::Several;
 use super::terms::{SINGULAR, Terms, scale};
 use crate::arena::Arena;
@@ -21,7 +22,7 @@ use crate::matrix::{
     at, copy, diagonal, first_mut, from, halves_mut, packed_len, row, row_at, row_at_mut, row_mut, split_at,
 };
 use crate::real::Real;
-use crate::rows::{first, halves, rows, rows_mut};
+use crate::rows::{first, halves, part, rows, rows_mut};
 use core::ops::Range;
 
 /// Fits of candidates that have as many own columns of each slice.
@@ -45,10 +46,11 @@ pub(super) struct Apart<'a> {
     solved: &'a mut [Eight],
     /// A block's shared columns.
     columns: &'a mut [Four],
-    /// For each value and candidate those of the fixed columns.
+    /// Of one sample in each pixel, for each value and candidate the coefficients of the fixed columns, with what all
+    /// slices' own have in common.
     trends: &'a mut [Eight],
-    /// For each value, candidate and slice, what shared columns are multiplied by at a sample of the slice. The fixed
-    /// ones are without what all slices have in common.
+    /// Of several, for each value, candidate and slice, what shared columns are multiplied by at a sample of the slice.
+    /// The fixed ones are without what all slices have in common.
     coefficients: &'a mut [Eight],
     /// Of several samples in each pixel.
     pub(super) several: Option<Several<'a>>,
@@ -60,6 +62,12 @@ fn gather(out: &mut [Eight], of: &[&[Eight]; LANES]) {
         for (out, entry) in out.iter_mut().zip(of[lane]) {
             out[lane] = entry[lane];
         }
+    }
+}
+
+fn add(sums: &mut [Eight], index: usize, more: &Eight) {
+    if let Some(sum) = sums.get_mut(index) {
+        *sum = plus(sum, more);
     }
 }
 
@@ -81,15 +89,16 @@ impl<'a> Apart<'a> {
             return 0;
         }
         let each = Sums::len(width, terms.of_slices(values, n)) + order * terms.all_own();
-        let coefficients = values * terms.ends.len() * (terms.fixed() + slices * width);
+        let coefficients = if n > 1 { slices * width } else { terms.fixed() } * values * terms.ends.len();
         let border = packed_len(width) + (values + terms.fixed()) * width;
         let several = if n > 1 { Several::len(terms, values) } else { 0 };
-        slices * each + border + order * (1 + terms.all_own()) + width + AT_ONCE * width + coefficients + several
+        slices * each + border + order * (1 + terms.all_own()) + AT_ONCE * width + coefficients + several
     }
 
     pub(super) fn new(terms: &Terms, values: usize, n: usize, arena: &mut Arena<'a, f32>) -> Self {
         let (slices, width, order) = (terms.slices, terms.columns(), Self::order(terms, values));
-        let fits = terms.ends.len();
+        let fits = values * terms.ends.len();
+        let [trends, coefficients] = if n > 1 { [0, fits * slices * width] } else { [fits * terms.fixed(), 0] };
         Self {
             width,
             own: 0,
@@ -97,11 +106,11 @@ impl<'a> Apart<'a> {
             blocks: arena.take_lanes(slices * order * terms.all_own()),
             border: arena.take_lanes(packed_len(width)),
             sides: arena.take_lanes((values + terms.fixed()) * width),
-            gathered: arena.take_lanes(order * terms.all_own() + width),
+            gathered: arena.take_lanes(order * terms.all_own()),
             solved: arena.take_lanes(order),
             columns: arena.take_fours(width),
-            trends: arena.take_lanes(values * fits * terms.fixed()),
-            coefficients: arena.take_lanes(values * fits * slices * width),
+            trends: arena.take_lanes(trends),
+            coefficients: arena.take_lanes(coefficients),
             several: (n > 1).then(|| Several::new(terms, values, arena)),
         }
     }
@@ -128,14 +137,16 @@ impl<'a> Apart<'a> {
                 continue;
             }
             (self.own, self.width) = (at(&terms.own, fit), at(&terms.ends, fit));
-            self.factor(batch, penalties);
-            for fit in begin..=fit {
-                for value in 0..batch.values {
+            let fits = begin..fit + 1;
+            self.factor(batch, penalties, fits.clone());
+            if batch.call.n == 1 {
+                for block in batch.blocks(training) {
+                    self.leave_own(batch, block, fits.clone(), corrections);
+                }
+            } else {
+                for (value, fit) in (0..batch.values).flat_map(|value| fits.clone().map(move |fit| (value, fit))) {
                     self.solve(batch, value, fit);
                 }
-            }
-            for block in batch.blocks(training).filter(|_| batch.call.n == 1) {
-                self.leave_own(batch, block, begin..fit + 1, corrections);
             }
             begin = fit + 1;
         }
@@ -165,8 +176,9 @@ impl<'a> Apart<'a> {
         packed_len(self.own) + (self.width + batch.values + batch.terms.fixed()) * self.own
     }
 
+    /// Factors the system; of one sample in each pixel with the trends of the candidates `fits`.
     #[inline(always)]
-    fn factor(&mut self, batch: &Batch<'_>, penalties: &[f32]) {
+    fn factor(&mut self, batch: &Batch<'_>, penalties: &[f32], fits: Range<usize>) {
         let (terms, values, slices) = (&batch.terms, batch.values, batch.terms.slices);
         let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(batch));
         let linear = batch.call.shape.linear() as f32;
@@ -174,6 +186,8 @@ impl<'a> Apart<'a> {
         let count = counts.fold(NONE, |sum, count| plus(&sum, &count));
         // Where a pixel's own sample is left out afterwards, of which there is one less.
         let (left_out, units) = if batch.call.n == 1 { (1.0, fixed) } else { (0.0, 0) };
+        let ends = part(&terms.ends, fits.start, fits.len());
+        self.trends.iter_mut().for_each(|sum| *sum = NONE);
         let scale = scale(batch.call.config, &count.map(|count| count - left_out));
         for (j, penalty) in penalties.iter().enumerate().take(width) {
             let out = row_mut(self.border, j);
@@ -223,6 +237,15 @@ impl<'a> Apart<'a> {
                 for (k, (l, z)) in row_at_mut(lines, own, i).iter_mut().zip(&*solved).enumerate() {
                     *l = product(z, &diagonal(triangle, k));
                 }
+                if let Some(unit) = i.checked_sub(width + values) {
+                    for value in 0..values {
+                        let line = row_at(lines, own, width + value).iter().zip(&*solved);
+                        let sum = line.fold(NONE, |sum, (l, z)| lanes::plus_product(sum, *l, *z));
+                        for fit in 0..ends.len() {
+                            add(self.trends, (value * ends.len() + fit) * fixed + unit, &sum);
+                        }
+                    }
+                }
                 // What the block leaves.
                 for (out, sum) in out.iter_mut().zip(sums) {
                     *out = plus(out, sum);
@@ -234,15 +257,24 @@ impl<'a> Apart<'a> {
             }
         }
         ldlt::factor_each(self.border, width);
-        for side in rows_mut(self.sides, width).take(values + units) {
+        let divide = |(j, out): (usize, &mut Eight)| *out = product(out, &diagonal(self.border, j));
+        let (of_values, of_units) = halves_mut(self.sides, values * width);
+        for side in rows_mut(of_values, width) {
             ldlt::forward_each::<f32, 1>(self.border, 0, ldlt::one_each_mut(side));
-            for (j, side) in side.iter_mut().enumerate() {
-                *side = product(side, &at(self.border, packed_len(j) + j));
+            side.iter_mut().enumerate().for_each(divide);
+        }
+        for (k, unit) in rows_mut(of_units, width).take(units).enumerate() {
+            ldlt::forward_each::<f32, 1>(self.border, 0, ldlt::one_each_mut(unit));
+            for (value, side) in rows(of_values, width).enumerate() {
+                sums_to(ends, unit, side, |fit, sum| {
+                    add(self.trends, (value * ends.len() + fit) * fixed + k, &sum);
+                });
             }
+            unit.iter_mut().enumerate().for_each(divide);
         }
     }
 
-    /// A candidate's coefficients for a value.
+    /// Of several samples in each pixel, a candidate's coefficients for a value.
     #[inline(always)]
     fn solve(&mut self, batch: &Batch<'_>, value: usize, fit: usize) {
         let (terms, slices) = (&batch.terms, batch.terms.slices);
@@ -251,8 +283,8 @@ impl<'a> Apart<'a> {
         let Some((shared, solved)) = self.solved.split_at_mut_checked(end) else { return };
         copy(shared, row_at(self.sides, self.width, value));
         ldlt::backward_each(self.border, shared);
-        let trend = row_at_mut(self.trends, fixed, which);
-        trend.iter_mut().for_each(|sum| *sum = NONE);
+        let mut trend = [NONE; MAX_FIXED];
+        let trend = first_mut(&mut trend, fixed);
         let each = slices * terms.columns();
         let coefficients = row_at_mut(self.coefficients, each, which);
         for slice in 0..slices {
@@ -284,7 +316,6 @@ impl<'a> Apart<'a> {
                 *out = minus(out, mean);
             }
         }
-        trend.iter_mut().zip(&*shared).for_each(|(trend, shared)| *trend = plus(trend, shared));
     }
 
     /// Corrects a block by the fit to the other pixels; see `Fits::leave_block`.
@@ -298,7 +329,8 @@ impl<'a> Apart<'a> {
         for (line, slices) in slices.iter().enumerate() {
             let slices = slices.map(|slice| slice as usize);
             gather(self.gathered, &slices.map(|slice| row_at(self.blocks, len, slice)));
-            let (mut leverage, mut shares) = (NONE, [NONE; MAX_FIXED]);
+            // Of each value x'b, and A^-1 x of the fixed columns: see `Fits::leave_block`.
+            let (mut leverage, mut sums) = (NONE, [NONE; 2 * Config::MAX_CHANNELS + MAX_FIXED]);
             for j in 0..own + width {
                 let (source, start) = match j.checked_sub(own) {
                     None => (terms.source(j).0, packed_len(j)),
@@ -316,56 +348,46 @@ impl<'a> Apart<'a> {
                 if j < own {
                     let scaled = product(out, &at(self.gathered, start + j));
                     leverage = lanes::plus_product(leverage, scaled, *out);
-                    for (unit, share) in shares.iter_mut().enumerate().take(fixed) {
-                        let unit = packed_len(own) + (width + values + unit) * own + j;
-                        *share = lanes::plus_product(*share, at(self.gathered, unit), *out);
+                    for (row, sum) in sums.iter_mut().enumerate().take(values + fixed) {
+                        let entry = packed_len(own) + (width + row) * own + j;
+                        *sum = lanes::plus_product(*sum, at(self.gathered, entry), *out);
                     }
                 }
             }
             let of_border = self.solved.get(own..own + width).unwrap_or_default();
             let mut begin = 0;
-            for fit in fits.clone() {
+            for (index, fit) in fits.clone().enumerate() {
                 let end = at(&terms.ends, fit);
-                for (b, z) in of_border.iter().enumerate().take(end).skip(begin) {
-                    let scaled = product(z, &at(self.border, packed_len(b) + b));
-                    leverage = lanes::plus_product(leverage, scaled, *z);
-                    for (unit, share) in shares.iter_mut().enumerate().take(fixed) {
-                        let entry = at(row_at(self.sides, width, values + unit), b);
-                        *share = lanes::plus_product(*share, entry, *z);
+                let solved = part(of_border, begin, end - begin);
+                for (z, b) in solved.iter().zip(begin..) {
+                    leverage = lanes::plus_product(leverage, product(z, &diagonal(self.border, b)), *z);
+                }
+                for (sum, side) in sums.iter_mut().zip(rows(self.sides, width)) {
+                    for (z, entry) in solved.iter().zip(from(side, begin)) {
+                        *sum = lanes::plus_product(*sum, *entry, *z);
+                        lanes::keep_together();
                     }
                 }
                 begin = end;
+                let (of_values, shares) = halves(&sums, values);
                 let mut reach = leverage;
-                for (place, share) in places.iter().zip(&shares) {
+                for (place, share) in places.iter().zip(shares) {
                     reach = lanes::minus_product(reach, place[line], *share);
                 }
-                for value in 0..values {
-                    let which = value * count + fit;
-                    let all = from(self.coefficients, which * terms.slices * terms.columns());
-                    let of = slices.map(|slice| row_at(all, terms.columns(), slice));
-                    let coefficients = first_mut(self.gathered, end);
-                    gather(coefficients, &of);
-                    let mut fitted = NONE;
-                    for (column, coefficient) in self.columns.iter().zip(&*coefficients) {
-                        fitted = lanes::plus_product(fitted, column[line], *coefficient);
-                        lanes::keep_together();
-                    }
+                for (value, fitted) in of_values.iter().enumerate() {
                     let mut trend = NONE;
-                    for (place, coefficient) in places.iter().zip(row_at(self.trends, fixed, which)) {
+                    let coefficients = row_at(self.trends, fixed, value * fits.len() + index);
+                    for (place, coefficient) in places.iter().zip(coefficients) {
                         trend = lanes::plus_product(trend, place[line], *coefficient);
                     }
-                    let mean = at(row_at(batch.means, values, block), value)[line];
-                    let mut residual = NONE;
-                    for l in 0..LANES {
-                        residual[l] = mean[l] - fitted[l] - trend[l];
-                    }
+                    let residual = minus(&at(row_at(batch.means, values, block), value)[line], fitted);
                     // A pixel that no fit is made to is corrected by the fit to all.
                     let residual = if batch.leaves_out { only(&inside[line], &residual) } else { residual };
                     let corrections = row_at_mut(corrections, count, block * values + value);
                     let Some(out) = corrections.get_mut(fit) else { return };
                     for l in 0..LANES {
                         let left = Real::max(1.0 - leverage[l], SINGULAR);
-                        out[line][l] = reach[l] * (residual[l] / left) - fitted[l];
+                        out[line][l] = trend[l] - fitted[l] + reach[l] * (residual[l] / left);
                     }
                     lanes::keep_together();
                 }

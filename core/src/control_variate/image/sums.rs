@@ -199,9 +199,7 @@ impl Call<'_> {
         // Without a weight all sums are zero.
         let [over, error_over] = [weight, error_weight].map(inverse);
         let gain = narrow(&lanes::zip(&wide(gain), &over, |gain, over| gain * over), |gain| gain as f32);
-        for l in 0..LANES {
-            out[l].gain = if weight[l] > 0.0 { gain[l] } else { 1.0 };
-        }
+        let mut gain = lanes::zip(&gain, weight, |gain, weight| if weight > 0.0 { gain } else { 1.0 });
         for (channel, [correction, spread]) in each.as_chunks().0.iter().enumerate() {
             let correction = lanes::zip(&wide(correction), &over, |correction, over| correction * over);
             let spread = lanes::zip(&wide(spread), &error_over, |spread, over| spread * over);
@@ -227,7 +225,7 @@ impl Call<'_> {
                 // A correction that left the type's range is none.
                 let is_corrected = correction[l].is_finite();
                 mean[l] = if is_corrected { plain[l] + correction[l] } else { plain[l] };
-                out[l].gain = if is_corrected { out[l].gain } else { 1.0 };
+                gain[l] = if is_corrected { gain[l] } else { 1.0 };
                 let has_error = error_weight[l] > 0.0 && is_corrected;
                 if has_error && self.error_is_the_groups() {
                     told[l] = spread[l];
@@ -244,6 +242,9 @@ impl Call<'_> {
                 let Estimate { mean: means, std_error: errors, .. } = &mut out[l];
                 (means[channel % means.len()], errors[channel % errors.len()]) = (mean[l], error[l]);
             }
+        }
+        for l in 0..LANES {
+            out[l].gain = gain[l];
         }
         out
     }
