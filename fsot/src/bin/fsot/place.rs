@@ -70,18 +70,16 @@ fn make(args: &Args) -> Result<()> {
     outputs.add(&args.common.out, &format.encode(&objects, colours)?)?;
     args.pictures.add(&mut outputs, PICTURE, || drawing(&objects, colours, placement.extent()))?;
     let classes = placement.problem.classes.len();
-    let text = format!(
-        "{}, {}{}: {}\n{} in {:.1} s",
+    let mut text = format!(
+        "{}, {}{}: {}\n",
         counted(points, "object"),
         counted(colours, "colour"),
         if args.sizes { ", sizes from 0 to 1" } else { "" },
         counted(classes, "class"),
-        counted(run.iterations - run.resumed_at, "iteration"),
-        run.seconds
     );
+    run.describe(&mut text);
     let json = json!({
-        "objects": points, "colors": colours, "sizes": args.sizes, "classes": classes, "iterations": run.iterations,
-        "seconds": run.seconds, "fingerprint": run.fingerprint,
+        "objects": points, "colors": colours, "sizes": args.sizes, "classes": classes, "run": run.json(),
     });
     finish(outputs, [run])?;
     args.common.print(&text, &json)

@@ -1,9 +1,7 @@
 //! What `fsot stipple` is asked for.
 
 use crate::common::Common;
-use crate::drive::Run;
 use crate::names;
-use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::export::points::{Format, Table, encode};
 use fsot::output::Outputs;
@@ -80,11 +78,6 @@ fn part(text: &str) -> std::result::Result<f32, String> {
         Ok(part) if (0.0..=1.0).contains(&part) => Ok(part),
         _ => Err("give a number from 0 to 1".to_owned()),
     }
-}
-
-/// How long it took.
-pub(super) fn took(run: &Run) -> String {
-    format!("{} in {:.1} s", counted(run.iterations - run.resumed_at, "iteration"), run.seconds)
 }
 
 impl Copies {

@@ -1,6 +1,6 @@
 //! `fsot stipple --frames`.
 
-use super::args::{Args, Picture, took};
+use super::args::{Args, Picture};
 use crate::drive::{drive, finish};
 use fsot::checkpoint::digest;
 use fsot::counted::counted;
@@ -65,25 +65,25 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     args.copies.add(&mut outputs, &all, size, &Table { points, classes: None })?;
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
     let worst = ratios.iter().copied().fold(f64::INFINITY, f64::min);
-    let text = format!(
-        "{} in {} of {}, {} of them new in each\n{}\n\
-         blurred PSNR of the frames {mean:.2} dB in the mean, {worst:.2} dB at least \
-         (sigma {sigma:.2} px, the mean distance between a frame's dots)",
+    let mut text = format!(
+        "{} in {} of {}, {} of them new in each\n",
         counted(needed, "point"),
         counted(windows.frames, "frame"),
         windows.window,
         windows.step,
-        took(&run),
     );
+    run.describe(&mut text);
+    text.push_str(&format!(
+        "  blurred PSNR of the frames {mean:.2} dB in the mean, {worst:.2} dB at least \
+         (sigma {sigma:.2} px, the mean distance between a frame's dots)"
+    ));
     let json = json!({
         "points": needed,
         "windows": windows,
         "radii": animation.radii,
         "blurred_psnr": ratios,
         "sigma_pixels": sigma,
-        "iterations": run.iterations,
-        "seconds": run.seconds,
-        "fingerprint": run.fingerprint,
+        "run": run.json(),
     });
     finish(outputs, [run])?;
     args.common.print(&text, &json)
