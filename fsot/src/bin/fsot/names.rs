@@ -62,6 +62,17 @@ pub(crate) fn tile(path: &Path) -> Result<()> {
     )))
 }
 
+/// Of a sampler's table, by whose ending `fsot measure --scenes` knows it.
+///
+/// # Errors
+/// It does not end in `.bin`.
+pub(crate) fn sampler(path: &Path) -> Result<()> {
+    if output::is_stream(path) || read::ending(path) == "bin" {
+        return Ok(());
+    }
+    Err(Error::Input(format!("{} is no name for the table of a sampler: end it in .bin", path.display())))
+}
+
 /// Of what a tile is exported as, `written`.
 ///
 /// # Errors

@@ -2,6 +2,7 @@
 
 use crate::common::Common;
 use crate::drive::{drive, finish};
+use crate::names;
 use fsot::Error;
 use fsot::error::Result;
 use fsot::output::{self, Outputs};
@@ -40,6 +41,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 
 fn make(args: &Args) -> Result<()> {
     let out = &args.common.out;
+    names::sampler(out)?;
     let beside = (!output::is_stream(out)).then(|| SamplerSidecar::path(out));
     args.common.check_outputs(beside.as_deref())?;
     let problem = problem(args)?;

@@ -5,6 +5,7 @@ use fsot::error::{Error, Result};
 use fsot::export::nft::TileFile;
 use fsot::metrics::scenes::{self, Count, Energies, Frames, PLACES, Plane, SceneTable};
 use fsot::random::stream;
+use fsot::read;
 use fsot::sampler::{sidecar, table};
 use noisefloor::tile::Shape;
 use serde_json::{Value, json};
@@ -193,9 +194,9 @@ fn owen() -> Plane {
 
 /// The samples that a file stands for.
 fn plane(path: &Path) -> Result<Plane> {
-    match path.extension().and_then(|ending| ending.to_str()) {
-        Some("nft") => tile(path),
-        Some("bin") => {
+    match &read::ending(path)[..] {
+        "nft" => tile(path),
+        "bin" => {
             let table = sidecar::read(path)?;
             let point = |pixel: usize, i: u32| table.point(pixel, i).map(|value| (value >> 8) as f32 * UNIT);
             let pixels = 0..table.size * table.size;
