@@ -111,7 +111,9 @@ pub fn read(path: &Path) -> Result<SamplerTable> {
     let sidecar: SamplerSidecar = toml::from_str(&text)
         .map_err(|error| Error::Input(format!("{} is no sidecar of a sampler: {error}", beside.display())))?;
     let SamplerSidecar { size, bits, .. } = sidecar;
-    SamplerProblem { size, bits, ..SamplerProblem::default() }.validate()?;
+    SamplerProblem { size, bits, ..SamplerProblem::default() }
+        .validate()
+        .map_err(|error| Error::Input(format!("{}: {error}", beside.display())))?;
     let bytes = fs::read(path).map_err(Error::io(path))?;
     if digest(&bytes) != sidecar.sha256 {
         return Err(Error::Input(format!("{} describes another table: its sha256 differs", beside.display())));

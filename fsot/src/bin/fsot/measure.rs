@@ -45,7 +45,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     tile: Tile,
     /// Weight of the newest frame in a moving average over the frames of a tile; may be repeated
-    #[arg(long, value_name = "ALPHA", default_values_t = [0.1, 0.2])]
+    #[arg(long, value_name = "ALPHA", default_values_t = [0.1, 0.2], allow_negative_numbers = true)]
     ema: Vec<f64>,
     #[command(flatten)]
     report: Report,

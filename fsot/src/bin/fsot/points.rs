@@ -52,7 +52,7 @@ pub(crate) struct Args {
     #[arg(long)]
     toroidal: bool,
     /// The probability of a projection along an axis: helps integrands that vary along axes (.3 is a good value)
-    #[arg(long, value_name = "PROBABILITY", default_value_t = 0.0)]
+    #[arg(long, value_name = "PROBABILITY", default_value_t = 0.0, allow_negative_numbers = true)]
     axis_priority: f32,
     /// The first points are uniform too, for this many numbers of points, evenly spaced on a logarithmic scale
     #[arg(long, value_name = "LEVELS", conflicts_with = "classes", value_parser = clap::value_parser!(u32).range(1..))]

@@ -26,9 +26,11 @@ pub(crate) struct Args {
     weights: Vec<f32>,
     /// The energy of two points is minus their distance to this power
     #[arg(long, value_name = "POWER", default_value_t = SamplerProblem::default().exponent)]
+    #[arg(allow_negative_numbers = true)]
     exponent: f32,
     /// How much a marginal counts that is not uniform
     #[arg(long, value_name = "WEIGHT", default_value_t = SamplerProblem::default().border)]
+    #[arg(allow_negative_numbers = true)]
     border: f32,
     #[command(flatten)]
     common: Common,

@@ -31,7 +31,7 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = ToneArgument::Encoded)]
     tone: ToneArgument,
     /// The part of what cyan, magenta and yellow have in common that black replaces, 0 to 1
-    #[arg(long, value_name = "PART", default_value_t = 1.0, value_parser = part)]
+    #[arg(long, value_name = "PART", default_value_t = 1.0, value_parser = part, allow_negative_numbers = true)]
     black: f32,
     /// Draw an animation: the pictures of its frames, in the order of their names ('frames/*.png')
     #[arg(long, value_name = "GLOB", requires_all = ["window", "step"])]
