@@ -181,7 +181,7 @@ fn the_command_writes_a_table_and_its_sidecar() {
     place.refuse("measure --scenes . s.bin", "its sha256 differs");
 }
 
-/// A small scene is read and measured; one that is cut short is refused.
+/// A small scene is read and measured; one that is cut short, or has what is no number, is refused.
 #[test]
 fn scenes_are_measured() {
     let place = Place::new();
@@ -194,4 +194,24 @@ fn scenes_are_measured() {
     assert!(text.contains("Owen") && text.contains("ramp") && text.contains("sigma 2.1"), "{text}");
     place.write("cut.table", &bytes[..bytes.len() - 1]);
     place.refuse(&command, "cut.table is no table of a scene");
+    std::fs::remove_file(place.path("cut.table")).unwrap();
+
+    let points = |value: f32| {
+        let values = (0..2 * 64).map(|i| if i == 5 { value } else { 0.25 });
+        let mut bytes = b"noisefloor-points 1 1 64 2\n".to_vec();
+        bytes.extend(values.flat_map(f32::to_le_bytes));
+        bytes
+    };
+    place.write("p", points(0.75));
+    place.succeed("measure --scenes . p");
+    for (value, name) in [(f32::NAN, "NaN"), (7.0, "7"), (1.0, "1"), (-0.5, "-0.5")] {
+        place.write("p", points(value));
+        place.refuse("measure --scenes . p", &format!("p: point 3 has {name} as coordinate 2: "));
+    }
+    for (value, name) in [(f32::NAN, "NaN"), (f32::NEG_INFINITY, "-inf"), (2e30, "2000000")] {
+        let end = bytes.len() - 4;
+        bytes[end..].copy_from_slice(&value.to_le_bytes());
+        place.write("ramp.table", &bytes);
+        place.refuse(&command, &format!("ramp.table: value 1024 is {name}"));
+    }
 }

@@ -8,7 +8,6 @@ use crate::error::{Error, Result};
 use crate::export::sidecar;
 use crate::read;
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -114,7 +113,7 @@ pub fn read(path: &Path) -> Result<SamplerTable> {
     SamplerProblem { size, bits, ..SamplerProblem::default() }
         .validate()
         .map_err(|error| Error::Input(format!("{}: {error}", beside.display())))?;
-    let bytes = fs::read(path).map_err(Error::io(path))?;
+    let bytes = read::bytes(path)?;
     if digest(&bytes) != sidecar.sha256 {
         return Err(Error::Input(format!("{} describes another table: its sha256 differs", beside.display())));
     }
