@@ -127,6 +127,32 @@ fn outputs_that_cannot_be() {
     place.refuse("tile --size 16 --out t.toml --iterations 3", "twice");
 }
 
+#[test]
+fn outputs_that_are_inputs() {
+    let place = Place::new();
+    for name in ["p.png", "all-0000.png", "all-0001.png"] {
+        GrayImage::from_fn(9, 9, |x, _| image::Luma([20 * x as u8])).save(place.path(name)).unwrap();
+    }
+    place.write("p.txt", "0.1 0.2\n0.7 0.4\n0.3 0.9\n0.6 0.6\n");
+    place.write("c.toml", "[[class]]\nname = \"a\"\nfunction = \"constant\"\ntarget = { image = \"p.png\" }\n");
+    for (arguments, name) in [
+        ("stipple p.png -n 50 -o p.png", "p.png"),
+        ("stipple ./p.png -n 50 --checkpoint p.png -o q.png", "p.png"),
+        ("points -n 9 --density p.png --png p.png -o q.txt", "p.png"),
+        ("points -n 9 --classes c.toml -o c.toml", "c.toml"),
+        ("points -n 9 --classes c.toml --png p.png -o q.txt", "p.png"),
+        ("place -n 9 --map p.png --png p.png -o q.csv", "p.png"),
+        ("stipple --frames all-*.png --window 5 --step 2 -o all.png", "all-0000.png"),
+        ("measure p.txt --prefix --plot p.txt", "p.txt"),
+        ("spectrum p.txt -o p.txt", "p.txt"),
+        ("export p.txt --format raw -o p.txt", "p.txt"),
+    ] {
+        place.refuse(arguments, &format!("{name} is an input, which would be replaced"));
+        let said = error(&place.run(arguments));
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_leaves_nothing() {

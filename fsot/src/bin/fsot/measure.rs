@@ -144,7 +144,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         return args.report.print(&text, &json);
     }
     args.plot.iter().try_for_each(|path| names::picture(path, &["png", "svg"]))?;
-    output::check(args.plot.as_deref())?;
+    output::check(args.plot.as_deref(), args.files.iter().map(PathBuf::as_path))?;
     let contents: Vec<Content> = args.files.iter().map(|path| args.tile.read(path)).collect::<Result<_>>()?;
     let (text, json) =
         args.threads.install(|| if args.prefix { prefix(args, &contents) } else { all(args, &contents) })??;

@@ -47,7 +47,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 fn make(args: &Args) -> Result<()> {
     let format = Format::of(&args.common.out)?;
     args.pictures.check()?;
-    args.common.check_outputs(args.pictures.paths())?;
+    args.common.check_outputs(args.pictures.paths(), args.map.as_deref())?;
     let (points, colours) = (args.n as usize, usize::from(args.colors));
     let mut map_digest = None;
     let mut map = None;

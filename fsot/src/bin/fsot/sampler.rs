@@ -45,7 +45,7 @@ fn make(args: &Args) -> Result<()> {
     let out = &args.common.out;
     names::sampler(out)?;
     let beside = (!output::is_stream(out)).then(|| SamplerSidecar::path(out));
-    args.common.check_outputs(beside.as_deref())?;
+    args.common.check_outputs(beside.as_deref(), [])?;
     let problem = problem(args)?;
     let mut optimizer = SamplerOptimizer::new(problem.clone())?;
     let run = drive(&mut optimizer, &description(&problem), &args.common)?;

@@ -32,7 +32,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 fn picture(args: &Args, image: &Path) -> Result<()> {
     let format = Picture::of(&args.common.out)?;
     args.copies.check()?;
-    args.common.check_outputs(args.copies.paths())?;
+    args.common.check_outputs(args.copies.paths(), [image])?;
     let bytes = read::picture(image)?;
     let named = |why| Error::Input(format!("{}: {why}", image.display()));
     let photo = Photo::new(&read::decode_image(&bytes, image)?).map_err(named)?;

@@ -84,7 +84,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 fn make(args: &Args) -> Result<()> {
     let out = &args.common.out;
     let sidecar = (!output::is_stream(out)).then(|| Sidecar::path(out));
-    args.common.check_outputs(sidecar.as_deref())?;
+    args.common.check_outputs(sidecar.as_deref(), [])?;
     names::tile(out)?;
     let problem = problem(args)?;
     let shape = shape(&problem, args.bits);

@@ -34,7 +34,8 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     }
     let outs: Vec<PathBuf> = (0..windows.frames).map(|frame| numbered(&args.common.out, frame)).collect();
     args.copies.check()?;
-    args.common.check_outputs(args.copies.paths().chain(outs.iter().map(PathBuf::as_path)))?;
+    let outputs = args.copies.paths().chain(outs.iter().map(PathBuf::as_path));
+    args.common.check_outputs(outputs, pictures.iter().map(PathBuf::as_path))?;
 
     let mut photos = Vec::with_capacity(pictures.len());
     let mut digests = Vec::with_capacity(pictures.len());
