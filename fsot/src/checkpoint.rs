@@ -116,6 +116,19 @@ pub fn resume(path: &Path, problem: &Problem, optimization: &mut dyn Optimizatio
     }
 }
 
+/// Removes a checkpoint of this problem, or what a link of its name leads to. Another problem's file stays.
+pub fn remove(path: &Path, problem: &Problem) {
+    let header = || {
+        let file = File::open(path).ok()?;
+        let length = file.metadata().ok()?.len();
+        Some(decode(file, length, 0).ok()?.0)
+    };
+    let same = |header: Header| header.version == env!("CARGO_PKG_VERSION") && header.problem == problem.description;
+    if header().is_some_and(same) {
+        fs::canonicalize(path).and_then(fs::remove_file).ok();
+    }
+}
+
 /// The header of a file of `length` bytes, and its coordinates, unless there are not `wanted` of them: no more is read
 /// than this problem's state has, whatever a file says.
 fn decode(

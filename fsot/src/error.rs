@@ -1,5 +1,6 @@
 //! What can go wrong, said so that a person knows what to do.
 
+use std::fmt::Display;
 use std::io;
 use std::path::PathBuf;
 
@@ -38,4 +39,9 @@ impl Error {
         let path = path.into();
         move |source| Error::Io { path, source }
     }
+}
+
+/// An [`Error::Input`] unless `good`.
+pub(crate) fn check(good: bool, what: &str, value: impl Display, allowed: &str) -> Result<()> {
+    if good { Ok(()) } else { Err(Error::input(format!("{what} is {value}; use {allowed}"))) }
 }

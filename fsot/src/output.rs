@@ -92,14 +92,26 @@ impl Pending {
 /// rather than after it. Also removes what earlier runs with the same outputs left behind when they were killed.
 ///
 /// # Errors
-/// A folder is missing or cannot be written to; a path is a folder or a read-only file; two are the same file.
-pub fn check<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<()> {
+/// A folder is missing or cannot be written to; a path is a folder or a read-only file; two are the same file, or one
+/// is one of the `inputs`, which would be lost.
+pub fn check<'a, 'b>(
+    paths: impl IntoIterator<Item = &'a Path>,
+    inputs: impl IntoIterator<Item = &'b Path>,
+) -> Result<()> {
+    // One that does not exist is named by whoever reads it.
+    let inputs: HashSet<PathBuf> = inputs.into_iter().filter_map(|input| fs::canonicalize(input).ok()).collect();
     let mut places = Vec::new();
     let mut seen = HashSet::new();
     for path in paths {
         let place = place(path)?;
         if is_stream(&place) {
             continue;
+        }
+        if inputs.contains(&place) {
+            return Err(Error::Input(format!(
+                "{} is an input, which would be replaced: give what is written another name",
+                path.display()
+            )));
         }
         if !seen.insert(place.clone()) {
             return Err(Error::Input(format!(

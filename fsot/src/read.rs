@@ -18,6 +18,8 @@ use std::path::Path;
 
 /// The most bytes of a picture's pixels.
 const MOST_DECODED: u64 = 512 << 20;
+/// The most bytes of a first line that says how many numbers follow.
+const LINE: usize = 100;
 const NO_PICTURE: &str = "not a picture that can be read: use PNG, JPEG or OpenEXR";
 
 /// The content of a picture's file, to be decoded by [`decode_image`].
@@ -33,9 +35,38 @@ pub fn picture(path: &Path) -> Result<Vec<u8>> {
 /// # Errors
 /// As [`picture`].
 pub fn tile(path: &Path) -> Result<Vec<u8>> {
+    begun(path, &MAGIC, "not a tile file (.nft)")
+}
+
+/// Of a file that begins with `magic` and numbers, separated by spaces, in one line: these numbers, and the floats
+/// after them, little-endian. Any other file is `otherwise`.
+///
+/// # Errors
+/// As [`picture`].
+pub fn floats(path: &Path, magic: &str, otherwise: &'static str) -> Result<(Vec<usize>, Vec<f32>)> {
+    let bytes = begun(path, magic.as_bytes(), otherwise)?;
+    let parsed = || {
+        let end = bytes.iter().take(LINE).position(|byte| *byte == b'\n')?;
+        let line = std::str::from_utf8(bytes.get(magic.len()..end)?).ok()?;
+        let numbers = line.trim_end().split(' ').map(|number| number.parse().ok()).collect::<Option<_>>()?;
+        let (floats, []) = bytes[end + 1..].as_chunks::<4>() else { return None };
+        Some((numbers, floats.iter().map(|float| f32::from_le_bytes(*float)).collect()))
+    };
+    parsed().ok_or_else(|| Error::Input(format!("{} is {otherwise}", path.display())))
+}
+
+/// The content of a file of any kind.
+///
+/// # Errors
+/// As [`picture`].
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>> {
+    bounded::read(path, |_| Ok(()))
+}
+
+fn begun(path: &Path, magic: &[u8], otherwise: &'static str) -> Result<Vec<u8>> {
     bounded::read(path, |beginning| {
-        let same = beginning.iter().zip(&MAGIC).all(|(byte, magic)| byte == magic);
-        if same { Ok(()) } else { Err("not a tile file (.nft)") }
+        let same = beginning.iter().zip(magic).all(|(byte, magic)| byte == magic);
+        if same { Ok(()) } else { Err(otherwise) }
     })
 }
 

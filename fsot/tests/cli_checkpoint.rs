@@ -1,6 +1,6 @@
 //! Checkpoints: the same bits after an interruption, and a sentence for every file that is none.
 
-use fsot::checkpoint::{Problem, resume, save};
+use fsot::checkpoint::{Problem, remove, resume, save};
 use fsot::run::Optimization;
 use serde_json::json;
 use std::fs;
@@ -128,6 +128,21 @@ fn a_foreign_checkpoint_is_refused_with_what_differs() {
     save(&path, &problem(7), &other).unwrap();
     let error = resume(&path, &problem(7), &mut Walk::new()).unwrap_err().to_string();
     assert!(error.contains("state"), "{error}");
+}
+
+#[test]
+fn only_a_checkpoint_of_the_problem_is_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.checkpoint");
+    remove(&path, &problem(7));
+    fs::write(&path, "mine").unwrap();
+    remove(&path, &problem(7));
+    assert_eq!(fs::read(&path).unwrap(), b"mine");
+    save(&path, &problem(8), &Walk::new()).unwrap();
+    remove(&path, &problem(7));
+    assert!(path.exists());
+    remove(&path, &problem(8));
+    assert!(!path.exists());
 }
 
 #[test]

@@ -14,6 +14,7 @@ fn numbers_out_of_range() {
         ("points -n 10 -d 9 --out p.txt", "9 is not in 1..=8"),
         ("points -n 10 --axis-priority 1.5 --out p.txt", "axis priority 1.5"),
         ("points -n 10 --axis-priority nan --out p.txt", "axis priority NaN"),
+        ("points -n 10 --axis-priority -0.5 --out p.txt", "axis priority -0.5"),
         ("points -n 10 --progressive 0 --out p.txt", "0"),
         ("points -n 10 --iterations 0 --out p.txt", "0"),
         ("points -n 10 --quality best --out p.txt", "draft"),
@@ -29,6 +30,8 @@ fn numbers_out_of_range() {
         ("tile --spp 3 --out t.nft", "spp is 3"),
         ("tile -d 9 --out t.nft", "dims is 9"),
         ("tile -d 0 --out t.nft", "dims is 0"),
+        ("tile --size 16 --box-share -1 --out t.nft", "share is -1"),
+        ("tile --size 16 --box-weight -1 --out t.nft", "weight is -1"),
         ("tile --kernel gaussian:0 --out t.nft", "Gaussian"),
         ("tile --kernel sinc --out t.nft", "not a kernel"),
         ("tile --size 16 --temporal 1 --temporal-kernel mantiuk --out t.nft", "frames"),
@@ -122,6 +125,32 @@ fn outputs_that_cannot_be() {
         place.refuse(&format!("points -n 10 {options} --iterations 3"), message);
     }
     place.refuse("tile --size 16 --out t.toml --iterations 3", "twice");
+}
+
+#[test]
+fn outputs_that_are_inputs() {
+    let place = Place::new();
+    for name in ["p.png", "all-0000.png", "all-0001.png"] {
+        GrayImage::from_fn(9, 9, |x, _| image::Luma([20 * x as u8])).save(place.path(name)).unwrap();
+    }
+    place.write("p.txt", "0.1 0.2\n0.7 0.4\n0.3 0.9\n0.6 0.6\n");
+    place.write("c.toml", "[[class]]\nname = \"a\"\nfunction = \"constant\"\ntarget = { image = \"p.png\" }\n");
+    for (arguments, name) in [
+        ("stipple p.png -n 50 -o p.png", "p.png"),
+        ("stipple ./p.png -n 50 --checkpoint p.png -o q.png", "p.png"),
+        ("points -n 9 --density p.png --png p.png -o q.txt", "p.png"),
+        ("points -n 9 --classes c.toml -o c.toml", "c.toml"),
+        ("points -n 9 --classes c.toml --png p.png -o q.txt", "p.png"),
+        ("place -n 9 --map p.png --png p.png -o q.csv", "p.png"),
+        ("stipple --frames all-*.png --window 5 --step 2 -o all.png", "all-0000.png"),
+        ("measure p.txt --prefix --plot p.txt", "p.txt"),
+        ("spectrum p.txt -o p.txt", "p.txt"),
+        ("export p.txt --format raw -o p.txt", "p.txt"),
+    ] {
+        place.refuse(arguments, &format!("{name} is an input, which would be replaced"));
+        let said = error(&place.run(arguments));
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
 }
 
 #[cfg(target_os = "linux")]

@@ -34,6 +34,15 @@ fn a_tile_ends_in_nft() {
 }
 
 #[test]
+fn a_sampler_ends_in_bin() {
+    let place = Place::new();
+    for name in ["s.nft", "s.toml", "s"] {
+        let message = format!("{name} is no name for the table of a sampler: end it in .bin");
+        place.refuse(&format!("sampler --iterations 1 --out {name}"), &message);
+    }
+}
+
+#[test]
 fn pictures_end_in_what_they_are() {
     let place = Place::new();
     place.write("p.txt", "0.1 0.2\n0.7 0.4\n0.3 0.9\n0.6 0.6\n");

@@ -139,6 +139,12 @@ fn a_link_to_what_does_not_exist_is_followed() {
     place.refuse(&format!("{points} a"), "cannot write a: it is a link that leads nowhere; remove it");
     assert!(["lost", "a", "b"].iter().all(|name| place.path(name).is_symlink()));
 
+    // An input by another name.
+    image::GrayImage::from_pixel(9, 9, image::Luma([90])).save(place.path("in.png")).unwrap();
+    symlink("in.png", place.path("same.png")).unwrap();
+    place.refuse("stipple in.png -n 9 -o same.png", "same.png is an input");
+    place.refuse("stipple same.png -n 9 -o in.png", "in.png is an input");
+
     // One file by two names.
     symlink("same.txt", place.path("name")).unwrap();
     place.refuse(&format!("{points} same.txt --svg name"), "twice");

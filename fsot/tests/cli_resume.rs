@@ -3,6 +3,7 @@
 #![cfg(unix)]
 
 use crate::cli_support::{Place, error};
+use std::io::{BufRead, BufReader};
 use std::process::Command;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -91,4 +92,45 @@ fn an_interrupted_run_is_refused_to_another_command() {
         "tile --size 16 --iterations 2 --out out --checkpoint state",
         "command: \"points\" there, \"tile\" here",
     );
+}
+
+#[test]
+fn a_run_that_ends_leaves_the_state_of_others() {
+    let place = Place::new();
+    let long = "points -n 600 --iterations 1000000 --threads 1 --checkpoint-every 0.02 --checkpoint state --out";
+    let (code, message) = interrupt(&place, &format!("{long} p.txt"), "state", "INT");
+    assert_eq!(code, Some(130), "{message}");
+    let saved = place.read("state");
+
+    // Saved under the same name after the other run began, which waits for whoever reads its output.
+    assert!(Command::new("mkfifo").arg(place.path("fifo")).status().unwrap().success());
+    let mut other = place.start("points -n 9 --iterations 2 --checkpoint late --out fifo");
+    let mut line = String::new();
+    let mut said = BufReader::new(other.stderr.take().unwrap());
+    said.read_line(&mut line).unwrap();
+    assert!(line.starts_with("2 steps"), "{line}");
+    place.write("late", &saved);
+    let points = std::fs::read_to_string(place.path("fifo")).unwrap();
+    assert!(other.wait().unwrap().success());
+    assert_eq!(points.lines().count(), 9);
+    assert!(place.read("late") == saved);
+}
+
+#[test]
+fn runs_to_standard_output_have_states_of_their_own() {
+    let place = Place::new();
+    let states = || place.names().into_iter().filter(|name| name.ends_with(".checkpoint")).collect::<Vec<_>>();
+    let long = "points -n 600 --iterations 1000000 --threads 1 --checkpoint-every 0.02 --out -";
+    let mut child = place.start(long);
+    while states().is_empty() {
+        assert!(child.try_wait().unwrap().is_none());
+        sleep(Duration::from_millis(2));
+    }
+    place.succeed("points -n 9 --iterations 2 --checkpoint-every 0 --out -");
+    signal("INT", child.id());
+    let said = error(&child.wait_with_output().unwrap());
+    assert_eq!(states().len(), 1);
+    assert!(said.contains(&states()[0]), "{said}");
+    let (_, said) = interrupt(&place, long, &states()[0], "INT");
+    assert!(said.contains("continuing from fsot-"), "{said}");
 }

@@ -58,9 +58,9 @@ fn numbers_agree_with_their_nouns() {
     let printed = place.succeed("points -n 1 --iterations 1 --out p.txt");
     assert!(printed.contains("  1 step in "), "{printed}");
     let printed = place.succeed("place -n 1 --iterations 1 --out o.csv");
-    assert!(printed.starts_with("1 object, 1 colour: 1 class\n1 iteration in "), "{printed}");
+    assert!(printed.starts_with("1 object, 1 colour: 1 class\n  1 step in "), "{printed}");
     let printed = place.succeed("place -n 4 --colors 2 --iterations 2 --out o.csv");
-    assert!(printed.starts_with("4 objects, 2 colours: 3 classes\n2 iterations in "), "{printed}");
+    assert!(printed.starts_with("4 objects, 2 colours: 3 classes\n  2 steps in "), "{printed}");
     let printed = place.succeed("tile --size 16 --spp 1 -d 1 --iterations 1 --integrands 1 --out t.nft");
     assert!(printed.contains("tile of 16x16 pixels, 1 sample of 1 dimension\n"), "{printed}");
     place.write("o.txt", "0.5 0.25\n");

@@ -149,6 +149,7 @@ fn bad_input_is_refused_and_nothing_written() {
     fail(&folder, &["measure", "--size", "7", &good], &["64 points", "7x7"]);
     fail(&folder, &["measure", "--size", "0", &good], &["0x0"]);
     fail(&folder, &["measure", "--size", "8", "--ema", "2", &good], &["alpha 2"]);
+    fail(&folder, &["measure", "--size", "8", "--ema", "-1", &good], &["alpha -1"]);
     fail(&folder, &["measure", "--prefix", &good, &more], &["different sizes"]);
     fail(&folder, &["measure", "--prefix", "--plot", "/nowhere/plot.png", &good], &["/nowhere"]);
     fail(&folder, &["spectrum", "--out", out, &good, &more], &["as many points"]);

@@ -160,13 +160,28 @@ fn the_command_writes_a_table_and_its_sidecar() {
     let sidecar = String::from_utf8(place.read("s.toml")).unwrap();
     assert!(sidecar.contains("command = \"fsot sampler --size 32 --bits 1 "), "{sidecar}");
     place.refuse("sampler --weights 1,2 --out t.bin", "--weights has 2 numbers");
-    place.refuse("sampler --size 33 --out t.bin", "32, 64 or 128");
+    for (options, message) in [
+        ("--size 48", "size is 48; use 32, 64 or 128 pixels"),
+        ("--bits 9", "bits is 9; use 1 to 6"),
+        ("--exponent 3", "exponent is 3; use 0.1 to 1.5"),
+        ("--exponent -1", "exponent is -1;"),
+        ("--border -1", "border is -1; use 0 to 100"),
+        ("--border nan", "border is NaN;"),
+        ("--weights 0,1,1,1,1,1,1", "the first weight is 0; use more than 0"),
+        ("--weights 1,1,1,1,1,1,2000", "a weight is 2000; use 0 to 1000"),
+        ("--iterations 9999999999999", "iterations is 9999999999999; use at most 2^40"),
+    ] {
+        place.refuse(&format!("sampler {options} --out t.bin"), message);
+    }
     place.refuse("measure --scenes . s.bin", "no tables of scenes");
+    place.write("t.toml", sidecar.replace("size = 32", "size = 48"));
+    place.refuse("measure --scenes . t.bin", "t.toml: size is 48;");
+    std::fs::remove_file(place.path("t.toml")).unwrap();
     place.write("s.bin", [0; 8]);
     place.refuse("measure --scenes . s.bin", "its sha256 differs");
 }
 
-/// A small scene is read and measured; one that is cut short is refused.
+/// A small scene is read and measured; one that is cut short, or has what is no number, is refused.
 #[test]
 fn scenes_are_measured() {
     let place = Place::new();
@@ -179,4 +194,24 @@ fn scenes_are_measured() {
     assert!(text.contains("Owen") && text.contains("ramp") && text.contains("sigma 2.1"), "{text}");
     place.write("cut.table", &bytes[..bytes.len() - 1]);
     place.refuse(&command, "cut.table is no table of a scene");
+    std::fs::remove_file(place.path("cut.table")).unwrap();
+
+    let points = |value: f32| {
+        let values = (0..2 * 64).map(|i| if i == 5 { value } else { 0.25 });
+        let mut bytes = b"noisefloor-points 1 1 64 2\n".to_vec();
+        bytes.extend(values.flat_map(f32::to_le_bytes));
+        bytes
+    };
+    place.write("p", points(0.75));
+    place.succeed("measure --scenes . p");
+    for (value, name) in [(f32::NAN, "NaN"), (7.0, "7"), (1.0, "1"), (-0.5, "-0.5")] {
+        place.write("p", points(value));
+        place.refuse("measure --scenes . p", &format!("p: point 3 has {name} as coordinate 2: "));
+    }
+    for (value, name) in [(f32::NAN, "NaN"), (f32::NEG_INFINITY, "-inf"), (2e30, "2000000")] {
+        let end = bytes.len() - 4;
+        bytes[end..].copy_from_slice(&value.to_le_bytes());
+        place.write("ramp.table", &bytes);
+        place.refuse(&command, &format!("ramp.table: value 1024 is {name}"));
+    }
 }

@@ -149,6 +149,7 @@ fn arguments_that_make_no_sense() {
         (&["-n", "5", "-o", "out.png"], "IMAGE"),
         (&["in.png", "-n", "5", "-o", "out.txt"], ".png or .svg"),
         (&["in.png", "-n", "5", "--black", "1.5", "-o", "out.png"], "0 to 1"),
+        (&["in.png", "-n", "5", "--black", "-1", "-o", "out.png"], "0 to 1"),
         (&["in.png", "-n", "5", "--black", "nan", "-o", "out.png"], "0 to 1"),
         (&["in.png", "-n", "5", "--cmyk", "--invert", "-o", "out.png"], "--invert"),
         (&["in.png", "-n", "5", "--window", "3", "-o", "out.png"], "--frames"),

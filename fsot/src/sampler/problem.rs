@@ -1,6 +1,6 @@
 //! What a nested-net tile is optimised for.
 
-use crate::error::{Error, Result};
+use crate::error::{Result, check};
 use crate::optimize::Quality;
 
 /// Octaves of samples that are looked at: the first 1, 2, 4, ... 64.
@@ -81,21 +81,17 @@ impl SamplerProblem {
     /// # Errors
     /// A field is out of its range.
     pub fn validate(&self) -> Result<()> {
-        let wrong = |what: &str| Err(Error::Input(what.to_owned()));
         let amount = |value: f32, most: f32| (0.0..=most).contains(&value);
-        match () {
-            () if ![32, 64, 128].contains(&self.size) => wrong("the size of a sampler must be 32, 64 or 128"),
-            () if !(1..=6).contains(&self.bits) => wrong("the bits of a sampler must be 1 to 6"),
-            () if !self.weights.iter().all(|w| amount(*w, 1e3)) || self.weights[0] == 0.0 => {
-                wrong("weights must be 0 to 1000, and the first more than 0")
-            }
-            () if !(0.1..=1.5).contains(&self.exponent) => wrong("the exponent must be .1 to 1.5"),
-            () if !amount(self.mean, 10.0) || !amount(self.border, 100.0) => wrong("mean or border is out of range"),
-            () if !amount(self.heat, 100.0) => wrong("the heat must be 0 to 100"),
-            () if !(1..=1 << 20).contains(&self.candidates) => wrong("candidates must be 1 to 1048576"),
-            () if self.iterations > 1 << 40 => wrong("there are too many steps"),
-            () => Ok(()),
-        }
+        check([32, 64, 128].contains(&self.size), "size", self.size, "32, 64 or 128 pixels")?;
+        check((1..=6).contains(&self.bits), "bits", self.bits, "1 to 6")?;
+        self.weights.iter().try_for_each(|weight| check(amount(*weight, 1e3), "a weight", weight, "0 to 1000"))?;
+        check(self.weights[0] > 0.0, "the first weight", self.weights[0], "more than 0")?;
+        check((0.1..=1.5).contains(&self.exponent), "exponent", self.exponent, "0.1 to 1.5")?;
+        check(amount(self.mean, 10.0), "mean", self.mean, "0 to 10")?;
+        check(amount(self.border, 100.0), "border", self.border, "0 to 100")?;
+        check(amount(self.heat, 100.0), "heat", self.heat, "0 to 100")?;
+        check((1..=1 << 20).contains(&self.candidates), "candidates", self.candidates, "1 to 1048576")?;
+        check(self.iterations <= 1 << 40, "iterations", self.iterations, "at most 2^40")
     }
 
     /// The octaves' weights at a step, and the temperature.

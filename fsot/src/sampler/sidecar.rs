@@ -8,7 +8,6 @@ use crate::error::{Error, Result};
 use crate::export::sidecar;
 use crate::read;
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -111,8 +110,10 @@ pub fn read(path: &Path) -> Result<SamplerTable> {
     let sidecar: SamplerSidecar = toml::from_str(&text)
         .map_err(|error| Error::Input(format!("{} is no sidecar of a sampler: {error}", beside.display())))?;
     let SamplerSidecar { size, bits, .. } = sidecar;
-    SamplerProblem { size, bits, ..SamplerProblem::default() }.validate()?;
-    let bytes = fs::read(path).map_err(Error::io(path))?;
+    SamplerProblem { size, bits, ..SamplerProblem::default() }
+        .validate()
+        .map_err(|error| Error::Input(format!("{}: {error}", beside.display())))?;
+    let bytes = read::bytes(path)?;
     if digest(&bytes) != sidecar.sha256 {
         return Err(Error::Input(format!("{} describes another table: its sha256 differs", beside.display())));
     }

@@ -2,8 +2,8 @@
 
 use super::kernel::Kernel;
 use super::temporal::TemporalKernel;
+use crate::error::{Error, Result, check};
 use crate::optimize::{Domain, Quality};
-use crate::{Error, error::Result};
 use noisefloor::tile::{MAX_DIMS, MAX_FRAMES, MAX_SIZE, MAX_SPP};
 
 /// The most coordinates in all.
@@ -218,11 +218,6 @@ impl TileProblem {
         let falling = ((done - f64::from(hold)) / (1.0 - f64::from(hold)).max(1e-9)).clamp(0.0, 1.0);
         f64::from(first) + falling * (f64::from(last) - f64::from(first))
     }
-}
-
-/// An [`Error::Input`] unless `good`.
-fn check(good: bool, what: &str, value: impl std::fmt::Display, allowed: &str) -> Result<()> {
-    if good { Ok(()) } else { Err(Error::input(format!("{what} is {value}; use {allowed}"))) }
 }
 
 /// An [`Error::Input`] unless it can be a class's weight.

@@ -2,6 +2,7 @@
 
 use crate::say::{STANDARD_OUTPUT, say};
 use clap::{Args, ValueEnum};
+use fsot::checkpoint::Problem;
 use fsot::{Error, error::Result, optimize, output};
 use serde_json::Value;
 use std::io::Write;
@@ -121,13 +122,17 @@ impl Common {
         self.seed
     }
 
-    /// Where the run is saved: beside the output, or in the working folder if the output is a pipe or a device.
-    pub(crate) fn checkpoint(&self) -> PathBuf {
-        match &self.checkpoint {
-            Some(path) => path.clone(),
-            None if output::is_stream(&self.out) => "fsot.checkpoint".into(),
-            None => self.sibling(".checkpoint"),
-        }
+    /// Where a run is saved: beside the output, or in the working folder if the output is a pipe or a device, by a name
+    /// that no other problem's run has.
+    pub(crate) fn checkpoint(&self, problem: &Problem) -> PathBuf {
+        let unnamed = || format!("fsot-{}.checkpoint", &problem.fingerprint()[..16]).into();
+        self.named_checkpoint().unwrap_or_else(unnamed)
+    }
+
+    /// The same, if it does not depend on the problem.
+    fn named_checkpoint(&self) -> Option<PathBuf> {
+        let beside = || (!output::is_stream(&self.out)).then(|| self.sibling(".checkpoint"));
+        self.checkpoint.clone().or_else(beside)
     }
 
     /// OUT with something appended to its name.
@@ -137,20 +142,26 @@ impl Common {
         path.into()
     }
 
-    /// Fails if one of these files, the output or the checkpoint could not be written: call it before the work.
-    pub(crate) fn check_outputs<'a>(&self, more: impl IntoIterator<Item = &'a Path>) -> Result<()> {
-        let checkpoint = self.checkpoint();
-        if output::is_stream(&checkpoint) {
+    /// Fails if one of these files, the output or the checkpoint could not be written, or is an input: call it before
+    /// the work.
+    pub(crate) fn check_outputs<'a>(
+        &self,
+        more: impl IntoIterator<Item = &'a Path>,
+        inputs: impl IntoIterator<Item = &'a Path>,
+    ) -> Result<()> {
+        let checkpoint = self.named_checkpoint();
+        if let Some(checkpoint) = checkpoint.as_deref().filter(|path| output::is_stream(path)) {
             return Err(Error::Input(format!(
                 "--checkpoint {}: a checkpoint is read again, so it must be a file: give another name",
                 checkpoint.display()
             )));
         }
-        let mut paths = vec![self.out.as_path(), checkpoint.as_path()];
+        let mut paths = vec![self.out.as_path()];
+        paths.extend(checkpoint.as_deref());
         for path in more {
             paths.push(path);
         }
-        output::check(paths)
+        output::check(paths, inputs)
     }
 
     /// Prints what was made, unless --quiet; to standard error if standard output may be the output.

@@ -6,13 +6,13 @@ use crate::say::say;
 use fsot::checkpoint::{self, Problem};
 use fsot::counted::counted;
 use fsot::error::{Error, Result};
-use fsot::output::Outputs;
+use fsot::output::{self, Outputs};
 use fsot::run::Optimization;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Steps are measured for this long before the cost is announced.
@@ -36,9 +36,10 @@ pub(crate) struct Run {
     pub(crate) seconds: f64,
     /// The moving average of the energy at the end; none if no step was left to take.
     pub(crate) energy: Option<f64>,
-    /// Of the problem and this program's version.
-    pub(crate) fingerprint: String,
+    problem: Problem,
     checkpoint: PathBuf,
+    /// Whether the checkpoint is this run's: continued from, or saved.
+    saved: bool,
 }
 
 impl Run {
@@ -54,7 +55,7 @@ impl Run {
     pub(crate) fn json(&self) -> Value {
         json!({
             "iterations": self.iterations, "resumed_at": self.resumed_at, "seconds": self.seconds,
-            "energy": self.energy, "fingerprint": self.fingerprint,
+            "energy": self.energy, "fingerprint": self.problem.fingerprint(),
         })
     }
 }
@@ -66,7 +67,8 @@ impl Run {
 /// nobody reads standard error any more.
 pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serialize, common: &Common) -> Result<Run> {
     let problem = Problem::new(problem)?;
-    let checkpoint = common.checkpoint();
+    let checkpoint = common.checkpoint(&problem);
+    output::check([checkpoint.as_path()], [])?;
     let resumed = checkpoint::resume(&checkpoint, &problem, optimization)?;
     let watch = Watch::start()?;
     let mut progress = Progress::new(common, &*optimization);
@@ -74,8 +76,8 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
         progress.say(&format!("continuing from {} at step {}", checkpoint.display(), optimization.iteration()));
     }
     let every = Duration::try_from_secs_f64(common.checkpoint_every).unwrap_or(Duration::MAX);
-    let mut saved = Instant::now();
-    let mut can_save = true;
+    let mut last = Instant::now();
+    let (mut saved, mut can_save) = (resumed, true);
     loop {
         let finished = optimization.iteration() >= optimization.iterations();
         if progress.unheard.is_some() || (watch.stopped() && !finished) {
@@ -83,34 +85,38 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
             if let Err(error) = checkpoint::save(&checkpoint, &problem, optimization) {
                 return Err(Error::Input(format!("stopped, and the state could not be saved: {error}")));
             }
-            return Err(progress.unheard.unwrap_or_else(|| Error::Stopped(stopped(&*optimization, common))));
+            return Err(progress.unheard.unwrap_or_else(|| Error::Stopped(stopped(&*optimization, &checkpoint))));
         }
         if finished {
             break;
         }
         let energy = optimization.step();
         progress.step(&*optimization, energy);
-        if saved.elapsed() >= every && can_save {
-            if let Err(error) = checkpoint::save(&checkpoint, &problem, optimization) {
-                progress.say(&format!("warning: no checkpoint can be saved: {error}"));
-                can_save = false;
+        if last.elapsed() >= every && can_save {
+            match checkpoint::save(&checkpoint, &problem, optimization) {
+                Ok(()) => saved = true,
+                Err(error) => {
+                    progress.say(&format!("warning: no checkpoint can be saved: {error}"));
+                    can_save = false;
+                }
             }
-            saved = Instant::now();
+            last = Instant::now();
         }
     }
     progress.clear();
     let seconds = progress.start.elapsed();
     if can_save && (resumed || seconds >= WORTH_SAVING) {
         // A full disk is about to be reported by whoever writes the output.
-        checkpoint::save(&checkpoint, &problem, optimization).ok();
+        saved |= checkpoint::save(&checkpoint, &problem, optimization).is_ok();
     }
     Ok(Run {
         iterations: optimization.iterations(),
         resumed_at: progress.first,
         seconds: seconds.as_secs_f64(),
         energy: progress.energy,
-        fingerprint: problem.fingerprint(),
+        problem,
         checkpoint,
+        saved,
     })
 }
 
@@ -118,16 +124,13 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
 pub(crate) fn finish(outputs: Outputs, runs: impl IntoIterator<Item = Run>) -> Result<()> {
     let _watch = Watch::start()?;
     outputs.commit()?;
-    for run in runs {
-        // What a link leads to, as it was written: the link stays.
-        std::fs::canonicalize(run.checkpoint).and_then(std::fs::remove_file).ok();
-    }
+    // Meanwhile another run may have saved its state under the same name.
+    runs.into_iter().filter(|run| run.saved).for_each(|run| checkpoint::remove(&run.checkpoint, &run.problem));
     Ok(())
 }
 
-fn stopped(optimization: &dyn Optimization, common: &Common) -> String {
+fn stopped(optimization: &dyn Optimization, path: &Path) -> String {
     let [done, all] = [optimization.iteration(), optimization.iterations()];
-    let path = common.checkpoint();
     format!(
         "stopped at step {done} of {all}; the state is saved in {}. Run the same command again to continue",
         path.display()

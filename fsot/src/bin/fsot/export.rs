@@ -54,7 +54,7 @@ impl Format {
 /// Reads the tile and writes it anew.
 pub(crate) fn run(args: &Args) -> Result<()> {
     names::export(&args.out, args.format.name())?;
-    output::check([args.out.as_path()])?;
+    output::check([args.out.as_path()], [args.tile.as_path()])?;
     let file = TileFile::read(&args.tile)?;
     let view = file.view();
     let stem = || args.tile.file_stem().map_or_else(|| "tile".into(), |stem| stem.to_string_lossy().into_owned());

@@ -45,7 +45,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     tile: Tile,
     /// Weight of the newest frame in a moving average over the frames of a tile; may be repeated
-    #[arg(long, value_name = "ALPHA", default_values_t = [0.1, 0.2])]
+    #[arg(long, value_name = "ALPHA", default_values_t = [0.1, 0.2], allow_negative_numbers = true)]
     ema: Vec<f64>,
     #[command(flatten)]
     report: Report,
@@ -144,7 +144,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         return args.report.print(&text, &json);
     }
     args.plot.iter().try_for_each(|path| names::picture(path, &["png", "svg"]))?;
-    output::check(args.plot.as_deref())?;
+    output::check(args.plot.as_deref(), args.files.iter().map(PathBuf::as_path))?;
     let contents: Vec<Content> = args.files.iter().map(|path| args.tile.read(path)).collect::<Result<_>>()?;
     let (text, json) =
         args.threads.install(|| if args.prefix { prefix(args, &contents) } else { all(args, &contents) })??;

@@ -1,4 +1,4 @@
-//! The names of outputs: none ends in what the file is not.
+//! The names of outputs: none ends in what the file is not. Pipes and devices have the names that they have.
 
 use fsot::error::{Error, Result};
 use fsot::{output, read};
@@ -13,7 +13,7 @@ const PICTURES: [&str; 5] = ["png", "svg", "jpg", "jpeg", "exr"];
 /// A sentence that names them.
 pub(crate) fn picture(path: &Path, written: &[&str]) -> Result<()> {
     let ending = read::ending(path);
-    if is_free(path) || written.contains(&&ending[..]) || !PICTURES.contains(&&ending[..]) {
+    if output::is_stream(path) || written.contains(&&ending[..]) || !PICTURES.contains(&&ending[..]) {
         return Ok(());
     }
     let kinds = written.iter().map(|kind| kind.to_ascii_uppercase()).collect::<Vec<_>>().join(" or ");
@@ -26,7 +26,7 @@ pub(crate) fn picture(path: &Path, written: &[&str]) -> Result<()> {
 /// # Errors
 /// The name is that of a picture.
 pub(crate) fn table(path: &Path, advice: &str) -> Result<()> {
-    if is_free(path) || !PICTURES.contains(&&read::ending(path)[..]) {
+    if output::is_stream(path) || !PICTURES.contains(&&read::ending(path)[..]) {
         return Ok(());
     }
     let name = path.display();
@@ -41,7 +41,7 @@ pub(crate) fn table(path: &Path, advice: &str) -> Result<()> {
 /// It ends in anything but `.nft`; the sentence says how to make what it names.
 pub(crate) fn tile(path: &Path) -> Result<()> {
     let ending = read::ending(path);
-    if is_free(path) || path.extension().is_none() || ending == "nft" {
+    if output::is_stream(path) || path.extension().is_none() || ending == "nft" {
         return Ok(());
     }
     let (name, tile) = (path.display(), path.with_extension("nft"));
@@ -62,18 +62,24 @@ pub(crate) fn tile(path: &Path) -> Result<()> {
     )))
 }
 
+/// Of a sampler's table, by whose ending `fsot measure --scenes` knows it.
+///
+/// # Errors
+/// It does not end in `.bin`.
+pub(crate) fn sampler(path: &Path) -> Result<()> {
+    if output::is_stream(path) || read::ending(path) == "bin" {
+        return Ok(());
+    }
+    Err(Error::Input(format!("{} is no name for the table of a sampler: end it in .bin", path.display())))
+}
+
 /// Of what a tile is exported as, `written`.
 ///
 /// # Errors
 /// It is that of a tile, which it would replace, or of another picture.
 pub(crate) fn export(path: &Path, written: &str) -> Result<()> {
-    if !is_free(path) && read::ending(path) == "nft" {
+    if !output::is_stream(path) && read::ending(path) == "nft" {
         return Err(Error::Input(format!("{} is the name of a tile: give the {written} file another", path.display())));
     }
     if PICTURES.contains(&written) { picture(path, &[written]) } else { Ok(()) }
-}
-
-/// Pipes and devices have the names that they have.
-fn is_free(path: &Path) -> bool {
-    output::is_stream(path)
 }

@@ -47,7 +47,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 fn make(args: &Args) -> Result<()> {
     let format = Format::of(&args.common.out)?;
     args.pictures.check()?;
-    args.common.check_outputs(args.pictures.paths())?;
+    args.common.check_outputs(args.pictures.paths(), args.map.as_deref())?;
     let (points, colours) = (args.n as usize, usize::from(args.colors));
     let mut map_digest = None;
     let mut map = None;
@@ -70,18 +70,16 @@ fn make(args: &Args) -> Result<()> {
     outputs.add(&args.common.out, &format.encode(&objects, colours)?)?;
     args.pictures.add(&mut outputs, PICTURE, || drawing(&objects, colours, placement.extent()))?;
     let classes = placement.problem.classes.len();
-    let text = format!(
-        "{}, {}{}: {}\n{} in {:.1} s",
+    let mut text = format!(
+        "{}, {}{}: {}\n",
         counted(points, "object"),
         counted(colours, "colour"),
         if args.sizes { ", sizes from 0 to 1" } else { "" },
         counted(classes, "class"),
-        counted(run.iterations - run.resumed_at, "iteration"),
-        run.seconds
     );
+    run.describe(&mut text);
     let json = json!({
-        "objects": points, "colors": colours, "sizes": args.sizes, "classes": classes, "iterations": run.iterations,
-        "seconds": run.seconds, "fingerprint": run.fingerprint,
+        "objects": points, "colors": colours, "sizes": args.sizes, "classes": classes, "run": run.json(),
     });
     finish(outputs, [run])?;
     args.common.print(&text, &json)

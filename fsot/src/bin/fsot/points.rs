@@ -52,7 +52,7 @@ pub(crate) struct Args {
     #[arg(long)]
     toroidal: bool,
     /// The probability of a projection along an axis: helps integrands that vary along axes (.3 is a good value)
-    #[arg(long, value_name = "PROBABILITY", default_value_t = 0.0)]
+    #[arg(long, value_name = "PROBABILITY", default_value_t = 0.0, allow_negative_numbers = true)]
     axis_priority: f32,
     /// The first points are uniform too, for this many numbers of points, evenly spaced on a logarithmic scale
     #[arg(long, value_name = "LEVELS", conflicts_with = "classes", value_parser = clap::value_parser!(u32).range(1..))]
@@ -80,7 +80,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 fn make(args: &Args) -> Result<()> {
     args.pictures.check()?;
     names::table(&args.common.out, "; --png and --svg draw the points")?;
-    args.common.check_outputs(args.pictures.paths())?;
+    let inputs = args.density.as_deref().into_iter().chain(args.classes.as_deref().map(Path::new));
+    args.common.check_outputs(args.pictures.paths(), inputs)?;
     if args.d < 2 && args.pictures.paths().next().is_some() {
         return Err(Error::input("points of 1 coordinate cannot be drawn: leave out --png and --svg"));
     }
@@ -121,6 +122,7 @@ fn problem(args: &Args) -> Result<(Problem, Value, [f32; 2])> {
             let mut shape: Option<[f32; 2]> = None;
             let classes = class::ClassFile::parse(path, &text)?.classes(dims, |image| {
                 let image = folder.join(image);
+                args.common.check_outputs(args.pictures.paths(), [image.as_path()])?;
                 let target = density(&image, dims, points, false, &mut files)?;
                 let this = target.extent();
                 if shape.is_some_and(|first| (0..2).any(|axis| (first[axis] - this[axis]).abs() > SAME_SHAPE)) {

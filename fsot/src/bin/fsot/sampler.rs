@@ -2,6 +2,7 @@
 
 use crate::common::Common;
 use crate::drive::{drive, finish};
+use crate::names;
 use fsot::Error;
 use fsot::error::Result;
 use fsot::output::{self, Outputs};
@@ -25,9 +26,11 @@ pub(crate) struct Args {
     weights: Vec<f32>,
     /// The energy of two points is minus their distance to this power
     #[arg(long, value_name = "POWER", default_value_t = SamplerProblem::default().exponent)]
+    #[arg(allow_negative_numbers = true)]
     exponent: f32,
     /// How much a marginal counts that is not uniform
     #[arg(long, value_name = "WEIGHT", default_value_t = SamplerProblem::default().border)]
+    #[arg(allow_negative_numbers = true)]
     border: f32,
     #[command(flatten)]
     common: Common,
@@ -40,8 +43,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 
 fn make(args: &Args) -> Result<()> {
     let out = &args.common.out;
+    names::sampler(out)?;
     let beside = (!output::is_stream(out)).then(|| SamplerSidecar::path(out));
-    args.common.check_outputs(beside.as_deref())?;
+    args.common.check_outputs(beside.as_deref(), [])?;
     let problem = problem(args)?;
     let mut optimizer = SamplerOptimizer::new(problem.clone())?;
     let run = drive(&mut optimizer, &description(&problem), &args.common)?;

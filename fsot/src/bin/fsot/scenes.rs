@@ -5,6 +5,7 @@ use fsot::error::{Error, Result};
 use fsot::export::nft::TileFile;
 use fsot::metrics::scenes::{self, Count, Energies, Frames, PLACES, Plane, SceneTable};
 use fsot::random::stream;
+use fsot::read;
 use fsot::sampler::{sidecar, table};
 use noisefloor::tile::Shape;
 use serde_json::{Value, json};
@@ -193,9 +194,9 @@ fn owen() -> Plane {
 
 /// The samples that a file stands for.
 fn plane(path: &Path) -> Result<Plane> {
-    match path.extension().and_then(|ending| ending.to_str()) {
-        Some("nft") => tile(path),
-        Some("bin") => {
+    match &read::ending(path)[..] {
+        "nft" => tile(path),
+        "bin" => {
             let table = sidecar::read(path)?;
             let point = |pixel: usize, i: u32| table.point(pixel, i).map(|value| (value >> 8) as f32 * UNIT);
             let pixels = 0..table.size * table.size;
@@ -220,17 +221,22 @@ fn tile(path: &Path) -> Result<Plane> {
 
 /// A file that begins with `noisefloor-points WIDTH HEIGHT SAMPLES DIMS`.
 fn points(path: &Path) -> Result<Plane> {
-    let refuse = || Error::Input(format!("{} is no sampler's table (.bin), tile (.nft) or points", path.display()));
-    let bytes = fs::read(path).map_err(Error::io(path))?;
-    let end = bytes.iter().take(100).position(|byte| *byte == b'\n').ok_or_else(refuse)?;
-    let line = std::str::from_utf8(&bytes[..end]).ok().and_then(|line| line.strip_prefix(POINTS)).ok_or_else(refuse)?;
-    let numbers: Vec<usize> = line.split(' ').map_while(|number| number.parse().ok()).collect();
-    let [width, height, samples, 2] = numbers[..] else { return Err(refuse()) };
-    let values = bytes[end + 1..].as_chunks::<4>().0;
+    const NONE: &str = "no sampler's table (.bin), tile (.nft) or points";
+    let refuse = || Err(Error::Input(format!("{} is {NONE}", path.display())));
+    let (numbers, values) = read::floats(path, POINTS, NONE)?;
+    let [width, height, samples, 2] = numbers[..] else { return refuse() };
     let wanted = width.checked_mul(height).and_then(|n| n.checked_mul(samples)).and_then(|n| n.checked_mul(2));
     if width != height || width == 0 || samples == 0 || wanted != Some(values.len()) {
-        return Err(refuse());
+        return refuse();
     }
-    let points = values.as_chunks::<2>().0.iter().map(|point| point.map(f32::from_le_bytes)).collect();
-    Ok(Plane { size: width, samples, points })
+    if let Some(index) = values.iter().position(|value| !(0.0..1.0).contains(value)) {
+        return Err(Error::Input(format!(
+            "{}: point {} has {} as coordinate {}: coordinates must be numbers in [0, 1)",
+            path.display(),
+            index / 2 + 1,
+            values[index],
+            index % 2 + 1
+        )));
+    }
+    Ok(Plane { size: width, samples, points: values.as_chunks::<2>().0.to_vec() })
 }

@@ -6,7 +6,7 @@ use crate::names;
 use fsot::error::{Error, Result};
 use fsot::metrics::figure::{self, Subject};
 use fsot::metrics::{Spectrum, error_spectrum};
-use fsot::output::Outputs;
+use fsot::output::{self, Outputs};
 use std::path::{Path, PathBuf};
 
 /// What `fsot spectrum` is asked for.
@@ -41,7 +41,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         return Err(Error::Input(format!("{}: with --svg, give --out the name of the PNG file", svg.display())));
     }
     names::picture(&args.out, &["png"])?;
-    fsot::output::check([args.out.as_path()].into_iter().chain(args.svg.then_some(svg.as_path())))?;
+    let outs = [args.out.as_path()].into_iter().chain(args.svg.then_some(svg.as_path()));
+    output::check(outs, args.files.iter().map(PathBuf::as_path))?;
     let (spectrum, subject) = args.threads.install(|| average(args))??;
     let sheet = figure::spectrum(&title(&args.files), &spectrum, subject);
     let mut outputs = Outputs::new();

@@ -6,7 +6,7 @@ mod frames;
 pub(crate) use args::Args;
 
 use crate::drive::{drive, finish};
-use args::{Picture, took};
+use args::Picture;
 use fsot::checkpoint::digest;
 use fsot::counted::counted;
 use fsot::error::{Error, Result};
@@ -32,7 +32,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 fn picture(args: &Args, image: &Path) -> Result<()> {
     let format = Picture::of(&args.common.out)?;
     args.copies.check()?;
-    args.common.check_outputs(args.copies.paths())?;
+    args.common.check_outputs(args.copies.paths(), [image])?;
     let bytes = read::picture(image)?;
     let named = |why| Error::Input(format!("{}: {why}", image.display()));
     let photo = Photo::new(&read::decode_image(&bytes, image)?).map_err(named)?;
@@ -53,16 +53,18 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
     let table = Table { points, classes: Some(stipple.labels()) };
     args.copies.add(&mut outputs, &drawing, size, &table)?;
     let counts: Vec<String> = stipple.inks.iter().map(|dots| format!("{} {}", dots.range.len(), dots.name)).collect();
-    let text = format!(
-        "{} ({}), radius {:.2} px, drawn {} x {}\n{}\n\
-         blurred PSNR {psnr:.2} dB (both blurred by sigma {sigma:.2} px, the mean distance between dots)",
+    let mut text = format!(
+        "{} ({}), radius {:.2} px, drawn {} x {}\n",
         counted(options.points, "dot"),
         counts.join(", "),
         stipple.radius * size as f32,
         drawn.width(),
         drawn.height(),
-        took(&run),
     );
+    run.describe(&mut text);
+    text.push_str(&format!(
+        "  blurred PSNR {psnr:.2} dB (both blurred by sigma {sigma:.2} px, the mean distance between dots)"
+    ));
     let inks: BTreeMap<_, _> = stipple.inks.iter().map(|dots| (dots.name, dots.range.len())).collect();
     let json = json!({
         "points": options.points,
@@ -71,9 +73,7 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
         "classes": stipple.problem.classes.len(),
         "blurred_psnr": psnr,
         "sigma_pixels": sigma,
-        "iterations": run.iterations,
-        "seconds": run.seconds,
-        "fingerprint": run.fingerprint,
+        "run": run.json(),
     });
     finish(outputs, [run])?;
     args.common.print(&text, &json)

@@ -52,10 +52,10 @@ pub(crate) struct Args {
     #[arg(long)]
     progressive: bool,
     /// The share of the slices that look at what a pixel is reconstructed from [default: tuned]
-    #[arg(long, value_name = "SHARE")]
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     box_share: Option<f32>,
     /// How much these slices count [default: tuned]
-    #[arg(long, value_name = "WEIGHT")]
+    #[arg(long, value_name = "WEIGHT", allow_negative_numbers = true)]
     box_weight: Option<f32>,
     /// Bits of each stored coordinate
     #[arg(long, default_value_t = 16, value_parser = bits)]
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 fn make(args: &Args) -> Result<()> {
     let out = &args.common.out;
     let sidecar = (!output::is_stream(out)).then(|| Sidecar::path(out));
-    args.common.check_outputs(sidecar.as_deref())?;
+    args.common.check_outputs(sidecar.as_deref(), [])?;
     names::tile(out)?;
     let problem = problem(args)?;
     let shape = shape(&problem, args.bits);

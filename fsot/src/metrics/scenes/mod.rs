@@ -11,10 +11,9 @@ mod frames;
 
 use crate::error::{Error, Result};
 use crate::random::stream;
+use crate::read;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 /// Places of the image in the plane of samples that errors are averaged over.
@@ -23,6 +22,8 @@ pub const PLACES: usize = 24;
 const FILTERS: [f64; 3] = [2.1, 1.0, 0.0];
 /// The most that a table's side or cells may be.
 const MOST: usize = 1024;
+/// The most that a value may be: sums of such are finite.
+const BRIGHTEST: f32 = 1e30;
 
 /// Pixels' integrands.
 pub struct SceneTable {
@@ -104,26 +105,25 @@ impl SceneTable {
     /// Reads a file of `embree_tables`.
     ///
     /// # Errors
-    /// It cannot be read, or is none.
+    /// It cannot be read, or is none; a value is no number, or beyond what averages can hold.
     pub fn read(path: &Path) -> Result<SceneTable> {
-        let refuse = || Error::Input(format!("{} is no table of a scene, or not a whole one", path.display()));
-        let mut file = BufReader::new(File::open(path).map_err(Error::io(path))?);
-        let mut line = Vec::new();
-        file.by_ref().take(100).read_until(b'\n', &mut line).map_err(Error::io(path))?;
-        let line = String::from_utf8(line).map_err(|_| refuse())?;
-        let numbers = line.trim_end().strip_prefix("noisefloor-scene ").ok_or_else(refuse)?;
-        let numbers: Vec<usize> = numbers.split(' ').map_while(|number| number.parse().ok()).collect();
-        let [width, height, cells] = numbers[..] else { return Err(refuse()) };
-        if [width, height, cells].iter().any(|side| !(2..=MOST).contains(side)) {
-            return Err(refuse());
+        const NONE: &str = "no table of a scene, or not a whole one";
+        let refuse = |why: &str| Err(Error::Input(format!("{} is {why}", path.display())));
+        let (numbers, values) = read::floats(path, "noisefloor-scene ", NONE)?;
+        let [width, height, cells] = numbers[..] else { return refuse(NONE) };
+        if [width, height, cells].iter().any(|side| !(2..=MOST).contains(side))
+            || width * height * cells * cells != values.len()
+        {
+            return refuse(NONE);
         }
-        let mut bytes = Vec::new();
-        let wanted = (width * height * cells * cells * 4) as u64;
-        file.take(wanted + 1).read_to_end(&mut bytes).map_err(Error::io(path))?;
-        if bytes.len() as u64 != wanted {
-            return Err(refuse());
+        if let Some(index) = values.iter().position(|value| !(-BRIGHTEST..=BRIGHTEST).contains(value)) {
+            return Err(Error::Input(format!(
+                "{}: value {} is {}: values must be numbers of at most {BRIGHTEST:e}",
+                path.display(),
+                index + 1,
+                values[index]
+            )));
         }
-        let values = bytes.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
         Ok(SceneTable::new([width, height], cells, values))
     }
 

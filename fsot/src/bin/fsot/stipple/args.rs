@@ -1,9 +1,7 @@
 //! What `fsot stipple` is asked for.
 
 use crate::common::Common;
-use crate::drive::Run;
 use crate::names;
-use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::export::points::{Format, Table, encode};
 use fsot::output::Outputs;
@@ -33,7 +31,7 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = ToneArgument::Encoded)]
     tone: ToneArgument,
     /// The part of what cyan, magenta and yellow have in common that black replaces, 0 to 1
-    #[arg(long, value_name = "PART", default_value_t = 1.0, value_parser = part)]
+    #[arg(long, value_name = "PART", default_value_t = 1.0, value_parser = part, allow_negative_numbers = true)]
     black: f32,
     /// Draw an animation: the pictures of its frames, in the order of their names ('frames/*.png')
     #[arg(long, value_name = "GLOB", requires_all = ["window", "step"])]
@@ -80,11 +78,6 @@ fn part(text: &str) -> std::result::Result<f32, String> {
         Ok(part) if (0.0..=1.0).contains(&part) => Ok(part),
         _ => Err("give a number from 0 to 1".to_owned()),
     }
-}
-
-/// How long it took.
-pub(super) fn took(run: &Run) -> String {
-    format!("{} in {:.1} s", counted(run.iterations - run.resumed_at, "iteration"), run.seconds)
 }
 
 impl Copies {

@@ -1,6 +1,6 @@
 //! `fsot stipple --frames`.
 
-use super::args::{Args, Picture, took};
+use super::args::{Args, Picture};
 use crate::drive::{drive, finish};
 use fsot::checkpoint::digest;
 use fsot::counted::counted;
@@ -34,7 +34,8 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     }
     let outs: Vec<PathBuf> = (0..windows.frames).map(|frame| numbered(&args.common.out, frame)).collect();
     args.copies.check()?;
-    args.common.check_outputs(args.copies.paths().chain(outs.iter().map(PathBuf::as_path)))?;
+    let outputs = args.copies.paths().chain(outs.iter().map(PathBuf::as_path));
+    args.common.check_outputs(outputs, pictures.iter().map(PathBuf::as_path))?;
 
     let mut photos = Vec::with_capacity(pictures.len());
     let mut digests = Vec::with_capacity(pictures.len());
@@ -65,25 +66,25 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     args.copies.add(&mut outputs, &all, size, &Table { points, classes: None })?;
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
     let worst = ratios.iter().copied().fold(f64::INFINITY, f64::min);
-    let text = format!(
-        "{} in {} of {}, {} of them new in each\n{}\n\
-         blurred PSNR of the frames {mean:.2} dB in the mean, {worst:.2} dB at least \
-         (sigma {sigma:.2} px, the mean distance between a frame's dots)",
+    let mut text = format!(
+        "{} in {} of {}, {} of them new in each\n",
         counted(needed, "point"),
         counted(windows.frames, "frame"),
         windows.window,
         windows.step,
-        took(&run),
     );
+    run.describe(&mut text);
+    text.push_str(&format!(
+        "  blurred PSNR of the frames {mean:.2} dB in the mean, {worst:.2} dB at least \
+         (sigma {sigma:.2} px, the mean distance between a frame's dots)"
+    ));
     let json = json!({
         "points": needed,
         "windows": windows,
         "radii": animation.radii,
         "blurred_psnr": ratios,
         "sigma_pixels": sigma,
-        "iterations": run.iterations,
-        "seconds": run.seconds,
-        "fingerprint": run.fingerprint,
+        "run": run.json(),
     });
     finish(outputs, [run])?;
     args.common.print(&text, &json)
