@@ -159,14 +159,15 @@ pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first:
     }
 }
 
-/// Right-hand sides, one for each system.
-pub(crate) fn one_each_mut<R>(x: &mut [Lanes<R>]) -> &mut [[Lanes<R>; 1]] {
-    x.as_chunks_mut().0
+/// The same for one right-hand side of each.
+#[inline(always)]
+pub(crate) fn forward_one<R: Real>(factors: &[Lanes<R>], first: usize, x: &mut [Lanes<R>]) {
+    forward_each::<R, 1>(factors, first, x.as_chunks_mut().0);
 }
 
 /// X := A^-1 X for eight systems side by side.
 pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
-    forward_each::<R, 1>(factors, 0, one_each_mut(x));
+    forward_one(factors, 0, x);
     let pivots = Triangle::new(factors, x.len());
     for (j, x_j) in x.iter_mut().enumerate() {
         *x_j = lanes::zip(x_j, &pivots.diagonal(j), |x_j, inverse| x_j * inverse);

@@ -178,6 +178,11 @@ impl<'a> Batch<'a> {
         if self.is_joined { [lanes::sum(sum); LANES] } else { *sum }
     }
 
+    /// What there is of the samples of a colour about their pixels' means.
+    pub(super) fn whole(&self, value: usize, colour: usize) -> Eight {
+        at(self.within.part(colour).squares, value)
+    }
+
     /// Of which colour a slot is.
     #[inline(always)]
     pub(super) fn colour(&self, (block, row): (usize, usize)) -> usize {

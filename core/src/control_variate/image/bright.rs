@@ -61,7 +61,10 @@ impl Highest {
 #[inline(always)]
 pub(super) fn limits(batch: &Batch<'_>, channel: usize, judges: Colours, trust: &Eight) -> [[f32; 2]; LANES] {
     let channels = batch.call.config.channels;
-    let is_halved = judges != Colours::ALL;
+    let mut limits = [[f32::NEG_INFINITY, f32::INFINITY]; LANES];
+    if judges == Colours::ALL && trust.iter().all(|&trust| trust < DOUBT) {
+        return limits;
+    }
     let mut counts = NONE;
     for inside in batch.blocks(judges).filter_map(|block| batch.inside.get(block)).flatten() {
         counts = plus(&counts, inside);
@@ -69,6 +72,7 @@ pub(super) fn limits(batch: &Batch<'_>, channel: usize, judges: Colours, trust: 
     let counts = batch.joined(&counts);
     let aside = counts.map(|count| (count as usize).div_ceil(SHARE).min(MOST));
     let kept = 1 + aside.into_iter().fold(0, usize::max);
+    // Of judges, and of others.
     let (mut highest, mut lowest) = (Highest::new(), Highest::new());
     let (mut most, mut least) = (Highest::new(), Highest::new());
     for (block, inside) in batch.inside.iter().enumerate() {
@@ -78,11 +82,10 @@ pub(super) fn limits(batch: &Batch<'_>, channel: usize, judges: Colours, trust: 
                 lanes::zip(&value, inside, |value, inside| if inside > 0.0 { value } else { f32::NEG_INFINITY })
             };
             let (high, low) = (seen(*high), seen(low.map(|low| -low)));
-            if !is_halved || judges.has(block) {
+            if judges.has(block) || judges == Colours::ALL {
                 highest.add(high, kept);
                 lowest.add(low, kept);
-            }
-            if is_halved {
+            } else {
                 most.add(high, 1);
                 least.add(low, 1);
             }
@@ -93,10 +96,8 @@ pub(super) fn limits(batch: &Batch<'_>, channel: usize, judges: Colours, trust: 
             highest.join(kept);
         }
     }
-    let mut limits = [[f32::NEG_INFINITY, f32::INFINITY]; LANES];
     for l in 0..LANES {
-        let is_doubted = trust[l] < DOUBT;
-        if counts[l] < FEWEST || is_doubted && !is_halved {
+        if counts[l] < FEWEST {
             continue;
         }
         let [low, high] = [-lowest.below(aside[l], l), highest.below(aside[l], l)];
@@ -104,8 +105,8 @@ pub(super) fn limits(batch: &Batch<'_>, channel: usize, judges: Colours, trust: 
         let near = [low - far, high + far];
         let is_beyond = |least: f32, most: f32| least < near[0] || most > near[1];
         let is_far = is_beyond(-lowest.below(0, l), highest.below(0, l));
-        let others = is_halved && is_beyond(-least.below(0, l), most.below(0, l));
-        if if is_doubted { others && !is_far } else { others || is_far } {
+        let are_others = is_beyond(-least.below(0, l), most.below(0, l));
+        if if trust[l] < DOUBT { are_others && !is_far } else { are_others || is_far } {
             limits[l] = near;
         }
     }

@@ -3,7 +3,6 @@
 use super::super::config::{Config, Estimator, Ridge};
 use super::super::samples::Reader;
 use super::pixels::{Image, Windows};
-use super::terms::Terms;
 use crate::basis::{Basis, Shape};
 use core::ops::Deref;
 
@@ -52,22 +51,17 @@ impl Layout<'_> {
 
     /// Whether groups without an edge of a shadow are corrected: not by edges alone.
     pub(super) fn fits_without_edges(&self) -> bool {
-        self.image.has_known() || !Terms::new(self, self.windows.pixels(), false).ends.is_empty()
+        self.image.has_known() || self.shape.columns() + self.shape.slices_apart().0 > 0
     }
 
-    /// In how many turns pixels are chosen for.
+    /// In how many turns pixels are chosen for: in two, halves of them choose for each other.
     pub(super) fn turns(&self) -> usize {
-        if self.has_halves() { 2 } else { 1 }
-    }
-
-    /// Whether halves of the pixels choose for each other.
-    fn has_halves(&self) -> bool {
-        self.config.estimator == Estimator::KFold && !self.is_single_fit()
+        if self.config.estimator == Estimator::KFold && !self.is_single_fit() { 2 } else { 1 }
     }
 
     /// Whether colours, or halves of them, are corrected by fits to others.
     pub(super) fn has_colours(&self) -> bool {
-        self.n > 1 || self.has_halves()
+        self.n > 1 || self.turns() > 1
     }
 
     /// Whether the standard error is that of the group's estimates, instead of the pixel's plain mean times the root of

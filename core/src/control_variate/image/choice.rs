@@ -219,7 +219,10 @@ impl<'a> Spreads<'a> {
             for (choice, each) in within.iter_mut().enumerate() {
                 let (value, fit) = choices.value_and_fit(channel, choice);
                 for (colour, each) in each.iter_mut().enumerate().filter(|&(colour, _)| taken.has(colour)) {
-                    *each = fits.within(value, colour, fit);
+                    *each = match fit.checked_sub(1) {
+                        Some(fit) => fits.within((value, colour), fit),
+                        None => batch.whole(value, colour),
+                    };
                 }
             }
         }

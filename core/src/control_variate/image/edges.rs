@@ -302,9 +302,9 @@ impl<'a> Edges<'a> {
                 }
             }
             for value in 0..batch.values {
-                let whole = fits.within(value, colour, 0);
+                let whole = batch.whole(value, colour);
                 let left = within.get(value).filter(|_| value < channels).unwrap_or(&whole);
-                fits.set_within(value, colour, fits.count, left);
+                fits.set_within(batch, (value, colour), fits.count.saturating_sub(1), left);
             }
         }
         // Of what is left of values without what is known nothing is dark.

@@ -25,7 +25,7 @@ const FAINT: f32 = 1e-24;
 
 /// Lanes of [`Fits::within`].
 fn within_len(terms: &Terms, values: usize, n: usize) -> usize {
-    if n > 1 { values * COLOURS * (1 + terms.candidates()) } else { 0 }
+    if n > 1 { values * COLOURS * terms.candidates() } else { 0 }
 }
 
 pub(super) struct Fits<'a> {
@@ -119,17 +119,16 @@ impl<'a> Fits<'a> {
             several.correct(batch, block, self.corrections, &mut left);
         }
         let fits = batch.terms.ends.len();
-        for (value, (whole, left)) in batch.within.part(colour).squares.iter().zip(rows(&left, fits)).enumerate() {
-            self.set_whole(value, colour, whole);
+        for (value, left) in rows(&left, fits).enumerate().take(batch.values) {
             for (fit, left) in left.iter().enumerate() {
-                self.set_within(value, colour, 1 + fit, &batch.joined(left));
+                self.set_within(batch, (value, colour), fit, &batch.joined(left));
             }
         }
     }
 
-    /// What a fit, or without one the mean, leaves of the samples of a colour about their pixels' means.
-    pub(super) fn within(&self, value: usize, colour: usize, fit: usize) -> Eight {
-        at(row_at(self.within, 1 + self.count, value * COLOURS + colour), fit)
+    /// What a fit leaves of the samples of a colour about their pixels' means.
+    pub(super) fn within(&self, (value, colour): (usize, usize), fit: usize) -> Eight {
+        at(row_at(self.within, self.count, value * COLOURS + colour), fit)
     }
 
     /// The candidates' corrections of a value of a block.
@@ -141,18 +140,10 @@ impl<'a> Fits<'a> {
         row_at_mut(self.corrections, self.count, block * self.values + value)
     }
 
-    /// Sets what there is of the samples of a colour, without a fit.
-    fn set_whole(&mut self, value: usize, colour: usize, whole: &Eight) {
-        if let Some(out) = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour).first_mut() {
-            *out = *whole;
-        }
-    }
-
     /// Sets what a fit leaves of the samples of a colour. A difference of sums has no more digits than they.
-    pub(super) fn set_within(&mut self, value: usize, colour: usize, fit: usize, left: &Eight) {
-        let row = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour);
-        let whole = at(row, 0);
-        if let Some(out) = row.get_mut(fit) {
+    pub(super) fn set_within(&mut self, batch: &Batch<'_>, (value, colour): (usize, usize), fit: usize, left: &Eight) {
+        let whole = batch.whole(value, colour);
+        if let Some(out) = row_at_mut(self.within, self.count, value * COLOURS + colour).get_mut(fit) {
             *out = lanes::zip(left, &whole, |left, whole| Real::max(left, whole * ROUNDING));
         }
     }
@@ -190,7 +181,7 @@ impl<'a> Fits<'a> {
             }
         };
         for side in rows_mut(sides, width) {
-            ldlt::forward_each::<f32, 1>(gram, 0, ldlt::one_each_mut(side));
+            ldlt::forward_one(gram, 0, side);
             divide(side, self.pivots);
         }
         if call.n > 1 {
@@ -206,7 +197,7 @@ impl<'a> Fits<'a> {
         // Coefficient k of a candidate is e_k' L'^-1 D^-1 L^-1 r over its columns.
         for (k, unit) in rows_mut(self.units, width).enumerate() {
             unit.iter_mut().enumerate().for_each(|(j, out)| *out = if j == k { [1.0; LANES] } else { NONE });
-            ldlt::forward_each::<f32, 1>(gram, k, ldlt::one_each_mut(unit));
+            ldlt::forward_one(gram, k, unit);
             for (side, coefficients) in rows(sides, width).zip(rows_mut(self.coefficients, self.count * width)) {
                 sums_to(&terms.ends, unit, side, |fit, sum| {
                     if let Some(out) = row_at_mut(coefficients, width, fit).get_mut(k) {
@@ -244,7 +235,7 @@ impl<'a> Fits<'a> {
             let mut explained = [NONE; MAX_FIXED];
             let explained = first_mut(&mut explained, fixed);
             copy(explained, sides);
-            ldlt::forward_each::<f32, 1>(&trend, 0, ldlt::one_each_mut(explained));
+            ldlt::forward_one(&trend, 0, explained);
             let mut apart = *whole;
             for (j, value) in explained.iter().enumerate() {
                 let scaled = product(value, &diagonal(&trend, j));
@@ -276,7 +267,6 @@ impl<'a> Fits<'a> {
         let (width, fixed) = (terms.columns(), terms.fixed());
         let Part { gram, sides, squares } = batch.within.part(colour);
         for (value, (whole, sides)) in squares.iter().zip(rows(sides, width)).enumerate() {
-            self.set_whole(value, colour, whole);
             for fit in 0..terms.ends.len() {
                 let mut left = *whole;
                 let coefficients = self.coefficients(terms, value, fit);
@@ -291,7 +281,7 @@ impl<'a> Fits<'a> {
                     let sum = lanes::plus_product(sum.map(|sum| sum + sum), *square, *b);
                     left = lanes::plus_product(left, sum, *b);
                 }
-                self.set_within(value, colour, 1 + fit, &left);
+                self.set_within(batch, (value, colour), fit, &left);
             }
         }
     }

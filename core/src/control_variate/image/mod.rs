@@ -159,13 +159,8 @@ impl<'a> Layout<'a> {
     fn band(&self) -> [usize; 2] {
         let [across, down] = self.windows.counts();
         let rows = (self.windows_at_once() / across.max(1)).min(down).max(1);
-        let touched = (0..down.div_ceil(rows)).map(|band| {
-            let last = (band * rows + rows).min(down) - 1;
-            self.windows.top(last) - self.windows.top(band * rows)
-        });
-        // All but the last are alike.
-        let most = touched.take(2).fold(0, usize::max);
-        [rows, most + self.windows.extent[1]]
+        // Later ones touch no more than the first.
+        [rows, self.windows.top(rows - 1) - self.windows.top(0) + self.windows.extent[1]]
     }
 
     fn workspace_len(&self) -> Option<usize> {

@@ -177,12 +177,10 @@ impl Call<'_> {
                 let plain = spreads.plain(channel);
                 *gain += ratio[lane % LANES] / channels as f32;
                 let spread = black_box(ratio[lane % LANES] * plain[lane % LANES]) / freedom[lane % LANES];
-                *error = if !by_groups {
-                    Real::sqrt(ratio[lane % LANES])
-                } else if is_known {
+                *error = if by_groups {
                     Real::sqrt(spread) * units.powers[lane % LANES]
                 } else {
-                    0.0
+                    Real::sqrt(ratio[lane % LANES])
                 };
             }
         }

@@ -233,7 +233,7 @@ impl<'a> Apart<'a> {
                         [if other == i - width - values { 1.0 / slices as f32 } else { 0.0 }; LANES]
                     };
                 }
-                ldlt::forward_each::<f32, 1>(triangle, 0, ldlt::one_each_mut(solved));
+                ldlt::forward_one(triangle, 0, solved);
                 for (k, (l, z)) in row_at_mut(lines, own, i).iter_mut().zip(&*solved).enumerate() {
                     *l = product(z, &diagonal(triangle, k));
                 }
@@ -260,11 +260,11 @@ impl<'a> Apart<'a> {
         let divide = |(j, out): (usize, &mut Eight)| *out = product(out, &diagonal(self.border, j));
         let (of_values, of_units) = halves_mut(self.sides, values * width);
         for side in rows_mut(of_values, width) {
-            ldlt::forward_each::<f32, 1>(self.border, 0, ldlt::one_each_mut(side));
+            ldlt::forward_one(self.border, 0, side);
             side.iter_mut().enumerate().for_each(divide);
         }
         for (k, unit) in rows_mut(of_units, width).take(units).enumerate() {
-            ldlt::forward_each::<f32, 1>(self.border, 0, ldlt::one_each_mut(unit));
+            ldlt::forward_one(self.border, 0, unit);
             for (value, side) in rows(of_values, width).enumerate() {
                 sums_to(ends, unit, side, |fit, sum| {
                     add(self.trends, (value * ends.len() + fit) * fixed + k, &sum);
