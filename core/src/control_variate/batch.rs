@@ -14,7 +14,7 @@ use crate::basis::Basis;
 use crate::error::Error;
 use crate::real::Real;
 
-/// Numbers of workspace that [`estimate`] needs for `n` samples.
+/// Numbers of workspace that [`estimate`] needs for up to `n` samples.
 ///
 /// # Errors
 /// [`Error::Range`] or [`Error::Unsupported`] for a configuration that cannot be, [`Error::Memory`] if no memory could
@@ -37,7 +37,7 @@ fn size(config: &Config, plan: &Plan, n: usize) -> Option<usize> {
         Method::Plain | Method::Incremental | Method::SquareRoot => 0,
         Method::Descent => descent::size(columns, channels),
         Method::KFold => k_fold::size(config, columns, channels, n)?,
-        Method::Robust | Method::LeaveOneOut | Method::LeastSquares => fitter::size(n, plan.dual, columns, channels)?,
+        Method::Robust | Method::LeaveOneOut | Method::LeastSquares => fitter::size(config, n, columns, channels)?,
     };
     design::size(n, columns, channels)?.checked_add(solve)
 }
