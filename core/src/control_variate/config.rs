@@ -232,12 +232,14 @@ impl Config {
     }
 
     /// Numbers from one sample's coordinates to the next.
-    pub(crate) fn step(&self) -> usize {
+    #[inline]
+    pub fn step(&self) -> usize {
         if self.stride == 0 { self.dims } else { self.stride }
     }
 
-    /// How many values of a sample are regressed: its channels, or its luminance.
-    pub(crate) fn regressed(&self) -> usize {
+    /// How many values of a sample are regressed: its channels, or 1 for its luminance.
+    #[inline]
+    pub fn regressed(&self) -> usize {
         if self.color == Color::LuminanceRatio { 1 } else { self.channels }
     }
 
