@@ -253,7 +253,8 @@ impl Config {
 pub struct Estimate {
     /// The integral, for each channel; unused channels are zero.
     pub mean: [f32; 4],
-    /// An estimate of the standard error of each mean; infinite if there are too few samples to tell.
+    /// An estimate of the standard error of each mean; infinite for one sample, and for a luminance ratio of samples
+    /// whose luminances cancel.
     pub std_error: [f32; 4],
     /// Samples that were used.
     pub samples: u32,
