@@ -37,7 +37,7 @@ fn size(config: &Config, plan: &Plan, n: usize) -> Option<usize> {
         Method::Plain | Method::Incremental | Method::SquareRoot => 0,
         Method::Descent => descent::size(columns, channels),
         Method::KFold => k_fold::size(config, columns, channels, n)?,
-        Method::Robust | Method::LeaveOneOut | Method::LeastSquares => fitter::size(config, n, columns, channels)?,
+        Method::Robust | Method::LeaveOneOut | Method::LeastSquares => fitter::size(config, n, columns, channels),
     };
     design::size(n, columns, channels)?.checked_add(solve)
 }

@@ -34,12 +34,13 @@ enum System<'a, R> {
     Dual(Dual<'a, R>),
 }
 
-/// How many numbers [`fit`] takes from its arena, for up to `n` samples: few may take more than many, by the dual.
-pub(crate) fn size(config: &Config, n: usize, columns: usize, channels: usize) -> Option<usize> {
+/// How many numbers [`fit`] takes from its arena, coefficients apart, for up to `n` samples: few may take more than
+/// many, by the dual.
+pub(crate) fn size(config: &Config, n: usize, columns: usize, channels: usize) -> usize {
     let short = n.min(plan::most_dual(config, columns));
-    let primal = if n > short { packed_len(columns) + normal::fit_len(columns, channels) } else { 0 };
-    let both = columns * (1 + channels) + MAX_FITS * columns * channels;
-    primal.max(dual::len(short, channels)?).checked_add(both)
+    let system = packed_len(columns) + columns * channels;
+    let primal = if n > short { system + normal::fit_len(columns, channels) } else { 0 };
+    columns + primal.max(dual::len(short, channels))
 }
 
 /// Makes and weighs the fits of a method. `coefficients`, if wanted, gets the blended fit's, a row for each channel.

@@ -10,6 +10,7 @@ use super::folds::Fold;
 use super::per_channel::PerChannel;
 use super::plan::Plan;
 use super::result::Outcome;
+use super::ridge::MAX_FITS;
 use super::samples::{Reader, Subset};
 use super::sums;
 use crate::arena::Arena;
@@ -24,7 +25,9 @@ pub(crate) fn size(config: &Config, columns: usize, channels: usize, n: usize) -
     // The largest training set leaves out the smallest fold, and the held-out fold is no larger than that.
     let train = n - n / config.fold_count();
     let designs = design::size(train, columns, channels)?.checked_mul(2)?;
-    fitter::size(config, train, columns, channels)?.checked_add(designs)?.checked_add(columns * channels)
+    // Coefficients of each fit, and of all together.
+    let coefficients = (MAX_FITS + 1) * columns * channels;
+    designs.checked_add(fitter::size(config, train, columns, channels) + coefficients)
 }
 
 /// The estimate over `config.folds` folds. `whole` holds all samples.
