@@ -60,7 +60,7 @@ fn size(config: &Config, plan: &Plan, n: usize) -> Option<usize> {
 /// // A polynomial of the fit's order is integrated exactly.
 /// let config = Config { estimator: Estimator::LeastSquares, ..Config::new(1, 1, 1) };
 /// let samples = Samples::new(&[0.1, 0.3, 0.9], &[1.1, 1.3, 1.9]);
-/// let estimate = estimate(&config, samples, &mut [0.0_f64; 64])?;
+/// let estimate = estimate(&config, samples, &mut [0.0_f64; 128])?;
 /// assert!((estimate.mean[0] - 1.5).abs() < 1e-4);
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
