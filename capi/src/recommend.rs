@@ -1,8 +1,9 @@
 //! Which estimator and which sampler to use.
 
 use crate::convert;
-use crate::cv::{default_config, nf_cv_config};
+use crate::cv::nf_cv_config;
 use crate::status::*;
+use crate::wrong::pick;
 use noisefloor_core::recommend::{Method, Sampling, recommend};
 
 /// Sampling: a pixel's samples are independent of each other.
@@ -64,21 +65,17 @@ pub unsafe extern "C" fn nf_recommend(
     out: *mut nf_recommendation,
 ) -> nf_status {
     status((|| {
-        let sampling = match sampling {
-            NF_SAMPLING_INDEPENDENT => Sampling::Independent,
-            NF_SAMPLING_STRATIFIED => Sampling::Stratified,
-            _ => return Err(NF_ERR_RANGE),
-        };
-        if can_share > 1 {
-            return Err(NF_ERR_RANGE);
-        }
-        let of = recommend(dims as usize, spp as usize, sampling, can_share == 1, sample_cost).map_err(status_of)?;
+        let samplings = [Sampling::Independent, Sampling::Stratified];
+        let sampling = pick(sampling, &samplings, c"sampling must be one of NF_SAMPLING_*, 0 or 1")?;
+        let can_share = pick(can_share, &[false, true], c"can_share must be 0 or 1")?;
+        let of = recommend(dims as usize, spp as usize, sampling, can_share, sample_cost).map_err(status_of)?;
         let config = nf_cv_config {
             dims: of.config.dims as u32,
             order: of.config.order as u32,
+            channels: 1,
             stratified: u32::from(of.config.stratified),
             stride: dims,
-            ..default_config()
+            ..Default::default()
         };
         let found = nf_recommendation {
             method: match of.method {

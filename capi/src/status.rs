@@ -48,44 +48,29 @@ pub extern "C" fn nf_abi_version() -> u32 {
 /// A static, NUL-terminated sentence for a status; never NULL, also for values that are no status.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_status_message(status: nf_status) -> *const c_char {
-    let text = match status {
+    let words = match status {
         NF_OK => c"success",
         NF_ERR_NULL => c"a required pointer is NULL",
-        NF_ERR_RANGE => {
-            c"an argument is outside its range: its description says what can be, nf_check() a configuration's"
-        }
-        NF_ERR_NOT_FINITE => c"an input value is NaN or infinite",
-        NF_ERR_MEMORY => c"caller-supplied memory is too small: ask the matching size function",
-        NF_ERR_ALIGNMENT => c"caller-supplied memory is not aligned: 8 bytes are needed",
-        NF_ERR_NO_SAMPLES => c"no samples, or nothing that can be drawn",
-        NF_ERR_UNSUPPORTED => c"this combination of options is not supported",
+        NF_ERR_RANGE => Error::Range.words(),
+        NF_ERR_NOT_FINITE => Error::NotFinite.words(),
+        NF_ERR_MEMORY => Error::Memory.words(),
+        NF_ERR_ALIGNMENT => c"a pointer is not aligned as its type needs, or memory of an object not to 8 bytes",
+        NF_ERR_NO_SAMPLES => Error::NoSamples.words(),
+        NF_ERR_UNSUPPORTED => Error::Unsupported.words(),
         NF_ERR_STATE => c"the memory holds no initialised object: call the matching init function first",
-        NF_ERR_MISMATCH => c"the two objects were made with different configurations",
-        NF_ERR_FOREIGN => c"the bytes are not a noisefloor tile or table",
-        NF_ERR_VERSION => c"the format is newer than this library",
-        NF_ERR_LENGTH => c"bytes are missing, or there are too many: ask the matching size function",
-        NF_ERR_CORRUPT => c"the bytes are damaged: the checksum does not match, or fields make no sense",
+        NF_ERR_MISMATCH => Error::Mismatch.words(),
+        NF_ERR_FOREIGN => Error::Foreign.words(),
+        NF_ERR_VERSION => Error::Version.words(),
+        NF_ERR_LENGTH => Error::Length.words(),
+        NF_ERR_CORRUPT => Error::Corrupt.words(),
         _ => c"not a noisefloor status",
     };
-    text.as_ptr()
+    words.as_ptr()
 }
 
 /// The status that stands for a core error.
 pub(crate) fn status_of(error: Error) -> nf_status {
-    match error {
-        Error::Range => NF_ERR_RANGE,
-        Error::NotFinite => NF_ERR_NOT_FINITE,
-        Error::Memory => NF_ERR_MEMORY,
-        Error::NoSamples => NF_ERR_NO_SAMPLES,
-        Error::Unsupported => NF_ERR_UNSUPPORTED,
-        Error::Mismatch => NF_ERR_MISMATCH,
-        Error::Foreign => NF_ERR_FOREIGN,
-        Error::Version => NF_ERR_VERSION,
-        Error::Length => NF_ERR_LENGTH,
-        Error::Corrupt => NF_ERR_CORRUPT,
-        // `Error` is non-exhaustive: a variant added there without a line here is at least an error.
-        _ => NF_ERR_RANGE,
-    }
+    error.status()
 }
 
 /// What a C function returns for the outcome of its body.

@@ -1,5 +1,6 @@
 //! The one error type of the crate.
 
+use core::ffi::CStr;
 use core::fmt;
 
 /// Why a call was refused. A refused call leaves its outputs and its object as they were.
@@ -14,41 +15,56 @@ use core::fmt;
 #[non_exhaustive]
 pub enum Error {
     /// An argument is outside its documented range.
-    Range,
+    Range = -2,
     /// An input value is NaN or infinite.
-    NotFinite,
+    NotFinite = -3,
     /// A caller-supplied buffer is too small.
-    Memory,
+    Memory = -4,
     /// There is nothing to estimate or to draw from.
-    NoSamples,
+    NoSamples = -6,
     /// The options exist, but not in this combination.
-    Unsupported,
+    Unsupported = -7,
     /// Two objects made with different configurations cannot be combined.
-    Mismatch,
+    Mismatch = -9,
     /// The bytes are no tile, or no table.
-    Foreign,
+    Foreign = -10,
     /// The format is newer than this library.
-    Version,
+    Version = -11,
     /// Bytes are missing, or there are too many.
-    Length,
+    Length = -12,
     /// The bytes are damaged: the checksum does not match, or fields make no sense.
-    Corrupt,
+    Corrupt = -13,
 }
 
 impl Error {
+    /// Its number in C, an `nf_status`.
+    pub const fn status(self) -> i32 {
+        self as i32
+    }
+
     /// A static sentence that says what was wrong.
     pub const fn message(self) -> &'static str {
+        match self.words().to_str() {
+            Ok(words) => words,
+            Err(_) => "",
+        }
+    }
+
+    /// The same, with the NUL that C needs.
+    pub const fn words(self) -> &'static CStr {
         match self {
-            Error::Range => "an argument is outside its documented range: the function's description lists what can be",
-            Error::NotFinite => "an input value is NaN or infinite",
-            Error::Memory => "a caller-supplied buffer is too small: ask the matching size function",
-            Error::NoSamples => "no samples, or nothing that can be drawn",
-            Error::Unsupported => "this combination of options is not supported",
-            Error::Mismatch => "the two objects were made with different configurations",
-            Error::Foreign => "the bytes are not a noisefloor tile or table",
-            Error::Version => "the format is newer than this library",
-            Error::Length => "bytes are missing, or there are too many: ask the matching size function",
-            Error::Corrupt => "the bytes are damaged: the checksum does not match, or fields make no sense",
+            Error::Range => {
+                c"an argument is outside its documented range; in C nf_check() names a configuration's field"
+            }
+            Error::NotFinite => c"an input value is NaN or infinite",
+            Error::Memory => c"caller-supplied memory is too small: the function's description says how much it needs",
+            Error::NoSamples => c"no samples, or nothing that can be drawn",
+            Error::Unsupported => c"this combination of options is not supported",
+            Error::Mismatch => c"the two objects were made with different configurations",
+            Error::Foreign => c"the bytes are not a noisefloor tile or table",
+            Error::Version => c"the format is newer than this library",
+            Error::Length => c"bytes are missing, or there are too many",
+            Error::Corrupt => c"the bytes are damaged: the checksum does not match, or fields make no sense",
         }
     }
 }

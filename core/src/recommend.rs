@@ -49,30 +49,21 @@ pub struct Recommendation {
     /// The [`Image::stride`](crate::control_variate::Image::stride) of [`Method::Shared`], for windows of 8. With
     /// surfaces leave it 0, for overlapping windows.
     pub image_stride: usize,
-    /// Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued
-    /// as a Sobol sequence that all pixels share.
+    /// Which built-in tile to draw from, if there is a choice: its samples per pixel. One of 1 sample is continued as a
+    /// Sobol sequence.
     pub tile_samples: usize,
     /// The same: its dims.
     pub tile_dims: usize,
-    /// What to expect: the mean squared error over that of the plain mean of as many independent samples, the geometric
-    /// mean over the integrands of the study.
-    ///
-    /// Of stratified samples it was measured on the tile named here, with two exceptions. For 5 to 8 dims and 1 to 3
-    /// samples it is that of the tile of 2 dims. From 64 samples on it is that of Sobol points scrambled in each pixel:
-    /// on the tile of 1 sample, continued, only the plain mean was measured, at .77 to 1.1 times this error.
+    /// What to expect: mean squared error over that of the plain mean of independent samples, as `docs/choosing.md`
+    /// measures it.
     pub error: f32,
-    /// The same of the image filtered by a Gaussian of 2.1 pixels, with the same exceptions: from 64 stratified samples
-    /// on it is that of Sobol points scrambled in each pixel; the plain mean of the tile of 1 sample, continued, has
-    /// .81 to 1.4 times this.
+    /// The same of the image filtered by a Gaussian of 2.1 pixels.
     pub filtered_error: f32,
-    /// Nanoseconds that the method takes for each sample on the machine of the report: of [`Method::Shared`] in
-    /// rendered frames of three channels with surfaces, in windows of `image_stride`, of [`Method::PerPixel`] for one
-    /// channel. Windows that overlap by half take three times as long as windows side by side, and pay from twice as
-    /// much on.
+    /// Nanoseconds that the method takes for each sample on the machine of the report: of [`Method::Shared`] three
+    /// channels in windows of `image_stride` (overlapping ones take three times as long as others), else one channel.
     pub cost: f32,
-    /// The cost of a sample, in nanoseconds, from which a fit pays: below it more samples of the plain mean, in the
-    /// same time, would lower the error further. Of [`Method::Shared`] the median over eight rendered frames, where
-    /// fits gain less than on the integrands of the study. Infinite if no fit pays at any cost.
+    /// The cost of a sample, in nanoseconds, below which more samples of the plain mean lower the error further in the
+    /// same time: for overlapping windows twice that of others. Infinite if no fit pays at any cost.
     pub pays_from: f32,
 }
 
@@ -244,7 +235,8 @@ const INDEPENDENT_SHARED: Table<Cell> = [
 
 /// The plain mean of stratified samples of one pixel: leave-one-out errors do not see strata, and a fit may be many
 /// times worse. From 64 samples on the figures, here and below, are those of Sobol points scrambled in each pixel; for
-/// 5 and 8 dims and 1 sample, of the tile of 2 dims.
+/// 5 and 8 dims and 1 sample, of the tile of 2 dims. On the tile of 1 sample, continued, the plain mean alone was
+/// measured, at .77 to 1.1 times these errors, filtered .81 to 1.4 times.
 const STRATIFIED_ALONE: Table<(f32, f32)> = [
     [(0.99, 0.039), (0.17, 0.011), (0.042, 0.0035), (0.0017, 0.0024), (0.00018, 0.00027)],
     [(0.99, 0.045), (0.2, 0.011), (0.052, 0.0035), (0.009, 0.012), (0.0016, 0.0022)],

@@ -199,6 +199,8 @@ static void many_integrals(void)
             CHECK_STATUS(estimate_many(&config, u, f, EACH, SIZE_MAX / 2, work.start, work.bytes, out),
                          NF_ERR_RANGE);
             CHECK_STATUS(estimate_many(&config, u, f, EACH, 0, work.start, work.bytes, out), NF_OK);
+            config.dims = 99;
+            CHECK_STATUS(estimate_many(&config, u, f, EACH, 0, work.start, work.bytes, out), NF_ERR_RANGE);
             CHECK(is_poisoned(out, sizeof out));
             memory_free(&work);
         }

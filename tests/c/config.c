@@ -53,6 +53,14 @@ static void checked(void)
     image.given.width = 65;
     image.given.height = 1;
     CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "given must lie");
+    image.given.width = 0;
+    image.given.height = 0;
+    image.given.x = 1;
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "given must lie in the image, and have pixels");
+    image.given.x = 0;
+    image.wanted.x = 60;
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "wanted must lie");
+    image.wanted.x = 0;
     image.given = image.wanted;
     CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "nf_cv_image_needed");
     CHECK_STATUS(nf_cv_image_needed(&image, &image.given), NF_OK);

@@ -201,3 +201,23 @@ fn an_accumulator_and_its_buffer() {
     let config = Config { estimator: Estimator::LeaveOneOut, ..config };
     assert_eq!(Accumulator::<f64>::new(&config).err(), Some(Error::Unsupported));
 }
+
+/// What lies behind an accumulator's numbers in a longer buffer is somebody else's.
+#[test]
+fn longer_buffers_keep_their_end() {
+    for estimator in ESTIMATORS.into_iter().filter(|&estimator| estimator != Estimator::LeaveOneOut) {
+        let mut all = Accumulator::<f32>::new(&config(2, 2, estimator)).unwrap();
+        let mut other = all;
+        let len = all.len();
+        let [mut sums, mut other_sums] = [vec![7.0; len + 100], vec![7.0; len + 100]];
+        all.reset(&mut sums).unwrap();
+        other.reset(&mut other_sums).unwrap();
+        // Of growing values, to which the sums' unit is fitted again and again.
+        let (u, mut f) = draw(64, 1);
+        f.iter_mut().enumerate().for_each(|(index, f)| *f *= (index as f32).exp2());
+        all.add(&mut sums, Samples::new(&u[..64], &f[..32])).unwrap();
+        other.add(&mut other_sums, Samples::new(&u[64..], &f[32..])).unwrap();
+        all.merge(&mut sums, &other, &other_sums).unwrap();
+        assert!(sums[len..].iter().chain(&other_sums[len..]).all(|&value| value == 7.0), "{estimator:?}");
+    }
+}

@@ -240,6 +240,16 @@ proptest! {
         knock::<f32>(&config, Samples::new(&u, &f), &mut rng);
     }
 
+    /// Workspace for some samples is enough for fewer, whatever solves their systems.
+    #[test]
+    fn workspace_grows_with_samples(
+        config in valid(), channels in 1_usize..=4, controls in 0_usize..=2,
+        solver in prop::sample::select(vec![Solver::Auto, Solver::NormalEquations, Solver::SquareRoot, Solver::Dual]),
+    ) {
+        let config = Config { channels, controls, solver, ..config };
+        prop_assert!((0..300).map_while(|n| workspace_len::<f64>(&config, n).ok()).is_sorted());
+    }
+
     /// Powers of two times f, of either sign: the same times the estimate, to the bit.
     #[test]
     fn powers_of_two_are_exact(

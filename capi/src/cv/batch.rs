@@ -1,6 +1,6 @@
 //! Estimates from arrays of samples.
 
-use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimate};
+use super::config::{c_estimate, check_core, core_config, is_narrow, nf_cv_config, nf_estimate};
 use super::samples::{self, nf_cv_samples};
 use crate::convert::{self, Room};
 use crate::dispatch;
@@ -14,8 +14,8 @@ pub(super) type Best = f64;
 #[cfg(not(feature = "double"))]
 pub(super) type Best = f32;
 
-/// Bytes of workspace for n samples of each integral; 0 for a configuration that nf_check() refuses, for
-/// options that exclude each other, or where no memory could be large enough.
+/// Bytes of workspace for n samples of each integral, or fewer; 0 for a configuration that nf_check() refuses, for
+/// options that exclude each other, or where no memory could be large enough. It never shrinks as n grows.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_workspace_size(config: *const nf_cv_config, n: usize) -> usize {
     let len = || {
@@ -51,7 +51,7 @@ pub unsafe extern "C" fn nf_cv_estimate(
             return Err(NF_ERR_UNSUPPORTED);
         }
         if given.n > 0 && integrals == 0 {
-            return Ok(());
+            return Ok(check_core(&core)?);
         }
         // SAFETY: the caller's arrays and workspace, of the lengths the header states.
         let (samples, out, workspace) = unsafe {
@@ -77,7 +77,7 @@ fn each(
     workspace: &mut [Best],
     out: &mut [Room<nf_estimate>],
 ) -> Result<(), nf_status> {
-    let stride = if config.stride == 0 { config.dims } else { config.stride };
+    let stride = config.step();
     let integral = |integral: usize| {
         let (first, end) = (integral * n, (integral + 1) * n);
         // The last row may end early.

@@ -60,7 +60,7 @@ pub const NF_RIDGE_AUTO: f32 = -1.0;
 /// How to estimate. Zero in any field but dims, order and channels is its default, so that
 /// `nf_cv_config config = {.dims = 2, .order = 2, .channels = 1};` is the robust estimator over 2 coordinates.
 #[repr(C)]
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 #[allow(non_camel_case_types)]
 pub struct nf_cv_config {
     /// Coordinates of a sample that are regressed, 1 to 16.
@@ -112,34 +112,13 @@ pub struct nf_cv_config {
 pub struct nf_estimate {
     /// The integral, for each channel; zero for channels that are not there.
     pub mean: [f32; 4],
-    /// An estimate of each mean's standard error; infinite if one sample is all there is.
+    /// An estimate of each mean's standard error; infinite if one sample is all there is, and for a luminance ratio of
+    /// samples whose luminances cancel.
     pub std_error: [f32; 4],
     /// Samples used.
     pub samples: u32,
     /// Estimated variance relative to the plain mean's, averaged over the channels; 1 is no gain.
     pub gain: f32,
-}
-
-/// The robust estimator over 2 coordinates, order 2, 1 channel.
-pub(crate) fn default_config() -> nf_cv_config {
-    nf_cv_config {
-        dims: 2,
-        order: 2,
-        channels: 1,
-        estimator: NF_CV_ROBUST,
-        basis: NF_BASIS_LEGENDRE,
-        stratified: 0,
-        slices: 0,
-        edges: 0,
-        controls: 0,
-        stride: 0,
-        solver: NF_SOLVER_AUTO,
-        precision: NF_PRECISION_F64,
-        nonfinite: NF_NONFINITE_ERROR,
-        color: NF_COLOR_PER_CHANNEL,
-        folds: 0,
-        ridge: 0.0,
-    }
 }
 
 /// The number of terms of a regression, constant included; 0 for a configuration that is NULL or out of range.
@@ -153,12 +132,7 @@ pub unsafe extern "C" fn nf_cv_terms(config: *const nf_cv_config) -> u32 {
 /// What is wrong with a configuration.
 pub(crate) fn check_config(config: &nf_cv_config) -> Result<(), Wrong> {
     check_core(&core_config(config)?)?;
-    is_narrow(config).map(|_| ()).map_err(|status| match status {
-        NF_ERR_UNSUPPORTED => {
-            Wrong(status, c"precision must be NF_PRECISION_F32: this library was built for float alone")
-        }
-        _ => Wrong(status, c"precision must be one of NF_PRECISION_*, 0 or 1"),
-    })
+    is_narrow(config).map(|_| ())
 }
 
 /// What the core finds wrong.
@@ -218,13 +192,15 @@ pub(super) fn core_config(config: &nf_cv_config) -> Result<Config, Wrong> {
 
 /// Whether the configuration asks for float instead of double.
 #[inline(always)]
-pub(super) fn is_narrow(config: &nf_cv_config) -> Result<bool, nf_status> {
+pub(super) fn is_narrow(config: &nf_cv_config) -> Result<bool, Wrong> {
+    const ALONE: Wrong =
+        Wrong(NF_ERR_UNSUPPORTED, c"precision must be NF_PRECISION_F32: this library was built for float alone");
     // Written so that, without double precision, the compiler sees that the answer is always yes.
     match config.precision {
         NF_PRECISION_F32 => Ok(true),
         NF_PRECISION_F64 if cfg!(feature = "double") => Ok(false),
-        NF_PRECISION_F64 => Err(NF_ERR_UNSUPPORTED),
-        _ => Err(NF_ERR_RANGE),
+        NF_PRECISION_F64 => Err(ALONE),
+        _ => Err(Wrong(NF_ERR_RANGE, c"precision must be one of NF_PRECISION_*, 0 or 1")),
     }
 }
 

@@ -1,13 +1,13 @@
 //! The fit by gradient descent, with its options and its solution.
 
 use super::batch::Best;
-use super::config::{c_estimate, check_core, core_config, default_config, is_narrow, nf_cv_config, nf_estimate};
+use super::config::{c_estimate, check_core, core_config, is_narrow, nf_cv_config, nf_estimate};
 use super::samples::{self, nf_cv_samples};
 use crate::convert;
 use crate::status::*;
 use crate::wrong::{Wrong, pick};
 use core::ffi::c_void;
-use noisefloor_core::control_variate::{self as cv, Color, Config, Estimator, Optimizer};
+use noisefloor_core::control_variate::{self as cv, Config, Estimator, Optimizer};
 
 /// Heavy-ball momentum. The default.
 pub const NF_OPTIMIZER_MOMENTUM: u32 = 0;
@@ -59,12 +59,11 @@ pub unsafe extern "C" fn nf_cv_gradient_descent(
         if core.estimator != Estimator::GradientDescent || core.controls > 0 {
             return Err(NF_ERR_UNSUPPORTED);
         }
-        let rows = if core.color == Color::LuminanceRatio { 1 } else { core.channels };
         let columns = core.terms().map_err(status_of)? - 1;
         // SAFETY: the caller's arrays and workspace, of the lengths the header states.
         let (samples, coefficients, workspace) = unsafe {
             let samples = samples::read_without_known(&core, given, 1)?;
-            let coefficients = convert::slice_mut(coefficients, convert::product(rows, columns)?)?;
+            let coefficients = convert::slice_mut(coefficients, convert::product(core.regressed(), columns)?)?;
             let len = cv::workspace_len::<Best>(&core, given.n).map_err(status_of)?;
             (samples, coefficients, convert::workspace::<Best>(workspace, bytes, len)?)
         };
@@ -76,7 +75,7 @@ pub unsafe extern "C" fn nf_cv_gradient_descent(
 
 /// What is wrong with a descent.
 pub(crate) fn check_descent(descent: &nf_cv_descent) -> Result<(), Wrong> {
-    check_core(&with(core_config(&default_config())?, descent)?)
+    check_core(&with(Config::new(1, 0, 1), descent)?)
 }
 
 /// The core's configuration with that of a descent.

@@ -67,7 +67,7 @@ pub unsafe extern "C" fn nf_cv_image_needed(image: *const nf_cv_image, out: *mut
     status((|| {
         // SAFETY: the caller's pointers, checked there. A copy, as `out` may be a part of the image.
         let (image, out) = unsafe { (*convert::reference(image)?, convert::room(out)?) };
-        let needed = core_image(&image, &NO_SAMPLES)?.needed().map_err(status_of)?;
+        let needed = core_image(&image, false)?.needed().map_err(status_of)?;
         let [x, y, width, height] = [needed.x, needed.y, needed.width, needed.height].map(|value| value as u32);
         out.write(nf_cv_rectangle { x, y, width, height });
         Ok(())
@@ -86,7 +86,7 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
         // SAFETY: the caller's pointers, checked there for NULL and alignment.
         let (config, image, samples) =
             unsafe { (convert::reference(config)?, convert::reference(image)?, convert::reference(samples)?) };
-        let image = core_image(image, samples)?;
+        let image = core_image(image, !samples.known.is_null())?;
         cv::image_workspace_len(&supported(config)?, &image, samples.n).map_err(status_of)
     };
     len().ok().and_then(|len| len.checked_mul(size_of::<f32>())).unwrap_or(0)
@@ -121,7 +121,7 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
         let (config, of, given) =
             unsafe { (convert::reference(config)?, convert::reference(image)?, convert::reference(samples)?) };
         let core = supported(config)?;
-        let mut image = core_image(of, given)?;
+        let mut image = core_image(of, !given.known.is_null())?;
         let [pixels, estimates] = image.counts().map_err(status_of)?;
         let values = convert::product(pixels, core.channels)?;
         // SAFETY: the caller's arrays, of the lengths the header states.
@@ -146,43 +146,10 @@ unsafe fn array<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], nf_stat
     if pointer.is_null() { Ok(&[]) } else { unsafe { convert::slice(pointer, len) } }
 }
 
-/// What is wrong with an image. Whether something is, the core decides.
+/// What is wrong with an image.
 pub(crate) fn check_image(image: &nf_cv_image) -> Result<(), Wrong> {
-    let Err(error) = core_image(image, &NO_SAMPLES)?.counts() else { return Ok(()) };
-    let side = if image.window == 0 { 8 } else { image.window };
-    let in_window = [side.min(image.width), side.min(image.height), image.frames.max(1)];
-    let end = |of: &nf_cv_rectangle| [u64::from(of.x) + u64::from(of.width), u64::from(of.y) + u64::from(of.height)];
-    let [right, below] = end(&image.given);
-    let [width, height] = match [image.given.width, image.given.height] {
-        [0, 0] => [image.width, image.height],
-        given => given,
-    };
-    let product = |lengths: [u32; 3]| lengths.map(u128::from).iter().product::<u128>();
-    let words = match image {
-        nf_cv_image { width: 0, .. } | nf_cv_image { height: 0, .. } => c"width and height must be at least 1",
-        _ if product([width, height, image.frames.max(1)]) > Image::MAX_PIXELS.into() => {
-            c"pixels must be at most 2^30 - 1, all frames together"
-        }
-        nf_cv_image { unordered: 1, .. } => {
-            c"given and wanted must be all zero, and pixels with surfaces at most 1024, where unordered is 1"
-        }
-        _ if product(in_window) > 1024 => c"window must be at most 1024 pixels, all frames together",
-        _ if image.stride > side => c"stride must be at most window",
-        _ if right > u64::from(image.width) || below > u64::from(image.height) => c"given must lie in the image",
-        _ => c"wanted must have pixels, and given hold its windows whole: see nf_cv_image_needed()",
-    };
-    Err(Wrong(status_of(error), words))
+    core_image(image, false)?.check_windows().map_err(|words| Wrong(NF_ERR_RANGE, words))
 }
-
-const NO_SAMPLES: nf_cv_samples = nf_cv_samples {
-    u: core::ptr::null(),
-    f: core::ptr::null(),
-    n: 0,
-    controls: core::ptr::null(),
-    control_integrals: core::ptr::null(),
-    known: core::ptr::null(),
-    known_integrals: core::ptr::null(),
-};
 
 /// The core's configuration.
 fn supported(config: &nf_cv_config) -> Result<Config, nf_status> {
@@ -193,11 +160,11 @@ fn supported(config: &nf_cv_config) -> Result<Config, nf_status> {
 }
 
 /// The image without its arrays; of `known` and `surfaces` only whether there are any, on which the workspace depends.
-fn core_image(image: &nf_cv_image, samples: &nf_cv_samples) -> Result<Image<'static>, Wrong> {
+fn core_image(image: &nf_cv_image, has_known: bool) -> Result<Image<'static>, Wrong> {
     let [width, height, frames, window, stride] =
         [image.width, image.height, image.frames, image.window, image.stride].map(|value| value as usize);
     let unordered = pick(image.unordered, &[false, true], c"unordered must be 0 or 1")?;
-    let known: &[f32] = if samples.known.is_null() { &[] } else { &[0.0] };
+    let known: &[f32] = if has_known { &[0.0] } else { &[] };
     let surfaces: &[u32] = if image.surfaces.is_null() { &[] } else { &[0] };
     let rectangle = |of: &nf_cv_rectangle| {
         let [x, y, width, height] = [of.x, of.y, of.width, of.height].map(|value| value as usize);

@@ -45,8 +45,7 @@ pub(super) unsafe fn read<'a>(
     }
     let rows = convert::product(samples.n, integrals)?;
     let Some(last) = rows.checked_sub(1) else { return Err(NF_ERR_NO_SAMPLES) };
-    let stride = if config.stride == 0 { config.dims } else { config.stride };
-    let u_len = convert::product(last, stride)?.checked_add(config.dims).ok_or(NF_ERR_RANGE)?;
+    let u_len = convert::product(last, config.step())?.checked_add(config.dims).ok_or(NF_ERR_RANGE)?;
     // SAFETY: the caller's promise, see above.
     unsafe {
         Ok(Samples {

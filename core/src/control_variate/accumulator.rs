@@ -137,8 +137,13 @@ impl<R: Real> Accumulator<R> {
         &self.config
     }
 
-    fn check_length(&self, sums: &[R]) -> Result<(), Error> {
-        if sums.len() < self.len() { Err(Error::Memory) } else { Ok(()) }
+    /// What it uses of a buffer.
+    fn used<'a>(&self, sums: &'a [R]) -> Result<&'a [R], Error> {
+        sums.get(..self.len()).ok_or(Error::Memory)
+    }
+
+    fn used_mut<'a>(&self, sums: &'a mut [R]) -> Result<&'a mut [R], Error> {
+        sums.get_mut(..self.len()).ok_or(Error::Memory)
     }
 
     /// Sums of a narrow type stop growing when they are too large for one more sample to show.
@@ -152,7 +157,7 @@ impl<R: Real> Accumulator<R> {
     /// # Errors
     /// [`Error::Memory`].
     pub fn reset(&mut self, sums: &mut [R]) -> Result<(), Error> {
-        self.check_length(sums)?;
+        let sums = self.used_mut(sums)?;
         *self = Self::new(&self.config)?;
         sums.fill(R::ZERO);
         Ok(())
@@ -163,7 +168,7 @@ impl<R: Real> Accumulator<R> {
     /// # Errors
     /// As for [`estimate`](super::estimate); adding no samples is an error too, and in `f32` more than 2^22 of them.
     pub fn add(&mut self, sums: &mut [R], samples: Samples<'_>) -> Result<(), Error> {
-        self.check_length(sums)?;
+        let sums = self.used_mut(sums)?;
         let reader = Reader::new(&self.config, samples)?;
         reader.check()?;
         self.check_capacity(reader.len() as u64)?;
@@ -221,8 +226,7 @@ impl<R: Real> Accumulator<R> {
         if self.config != other.config {
             return Err(Error::Mismatch);
         }
-        self.check_length(sums)?;
-        other.check_length(other_sums)?;
+        let (sums, other_sums) = (self.used_mut(sums)?, other.used(other_sums)?);
         if other.samples == 0 {
             return Ok(());
         }
@@ -265,7 +269,7 @@ impl<R: Real> Accumulator<R> {
     /// [`Error::NoSamples`] if there are none, [`Error::Memory`] if `workspace` is shorter than
     /// [`Accumulator::workspace_len`] says.
     pub fn estimate(&self, sums: &[R], workspace: &mut [R]) -> Result<Estimate, Error> {
-        self.check_length(sums)?;
+        let sums = self.used(sums)?;
         if self.samples == 0 {
             return Err(Error::NoSamples);
         }

@@ -14,7 +14,7 @@ use crate::basis::Basis;
 use crate::error::Error;
 use crate::real::Real;
 
-/// Numbers of workspace that [`estimate`] needs for `n` samples.
+/// Numbers of workspace that [`estimate`] needs for up to `n` samples.
 ///
 /// # Errors
 /// [`Error::Range`] or [`Error::Unsupported`] for a configuration that cannot be, [`Error::Memory`] if no memory could
@@ -37,7 +37,7 @@ fn size(config: &Config, plan: &Plan, n: usize) -> Option<usize> {
         Method::Plain | Method::Incremental | Method::SquareRoot => 0,
         Method::Descent => descent::size(columns, channels),
         Method::KFold => k_fold::size(config, columns, channels, n)?,
-        Method::Robust | Method::LeaveOneOut | Method::LeastSquares => fitter::size(n, plan.dual, columns, channels)?,
+        Method::Robust | Method::LeaveOneOut | Method::LeastSquares => fitter::size(config, n, columns, channels),
     };
     design::size(n, columns, channels)?.checked_add(solve)
 }
@@ -60,7 +60,7 @@ fn size(config: &Config, plan: &Plan, n: usize) -> Option<usize> {
 /// // A polynomial of the fit's order is integrated exactly.
 /// let config = Config { estimator: Estimator::LeastSquares, ..Config::new(1, 1, 1) };
 /// let samples = Samples::new(&[0.1, 0.3, 0.9], &[1.1, 1.3, 1.9]);
-/// let estimate = estimate(&config, samples, &mut [0.0_f64; 64])?;
+/// let estimate = estimate(&config, samples, &mut [0.0_f64; 128])?;
 /// assert!((estimate.mean[0] - 1.5).abs() < 1e-4);
 /// # Ok::<(), noisefloor::Error>(())
 /// ```

@@ -95,7 +95,7 @@ pub enum Ridge {
 /// let config = Config { slices: 6, ..Config::new(3, 2, 3) };
 /// assert_eq!(config.terms(), Ok(42)); // the constant, 5 shared, and for each light an indicator and 5 of its own
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Config {
     /// Coordinates of a sample that are regressed, 1 to 16.
     pub dims: usize,
@@ -159,28 +159,8 @@ impl Config {
 
     /// The default estimator over `dims` coordinates, of total degree `order`, for `channels` values.
     #[inline]
-    pub const fn new(dims: usize, order: usize, channels: usize) -> Self {
-        Self {
-            dims,
-            order,
-            channels,
-            estimator: Estimator::Robust,
-            basis: Family::Legendre,
-            stratified: false,
-            slices: 0,
-            edges: 0,
-            controls: 0,
-            stride: 0,
-            solver: Solver::Auto,
-            non_finite: NonFinite::Error,
-            color: Color::PerChannel,
-            folds: 0,
-            iterations: 0,
-            optimizer: Optimizer::Momentum,
-            ridge: Ridge::Default,
-            learning_rate: 0.0,
-            momentum: 0.0,
-        }
+    pub fn new(dims: usize, order: usize, channels: usize) -> Self {
+        Self { dims, order, channels, ..Self::default() }
     }
 
     /// Terms of the regression, constant included.
@@ -232,12 +212,14 @@ impl Config {
     }
 
     /// Numbers from one sample's coordinates to the next.
-    pub(crate) fn step(&self) -> usize {
+    #[inline]
+    pub fn step(&self) -> usize {
         if self.stride == 0 { self.dims } else { self.stride }
     }
 
-    /// How many values of a sample are regressed: its channels, or its luminance.
-    pub(crate) fn regressed(&self) -> usize {
+    /// How many values of a sample are regressed: its channels, or 1 for its luminance.
+    #[inline]
+    pub fn regressed(&self) -> usize {
         if self.color == Color::LuminanceRatio { 1 } else { self.channels }
     }
 
@@ -251,7 +233,8 @@ impl Config {
 pub struct Estimate {
     /// The integral, for each channel; unused channels are zero.
     pub mean: [f32; 4],
-    /// An estimate of the standard error of each mean; infinite if there are too few samples to tell.
+    /// An estimate of the standard error of each mean; infinite for one sample, and for a luminance ratio of samples
+    /// whose luminances cancel.
     pub std_error: [f32; 4],
     /// Samples that were used.
     pub samples: u32,

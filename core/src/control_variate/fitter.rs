@@ -6,7 +6,7 @@ use super::fit::dual::{self, Dual};
 use super::fit::normal::{self, Normal};
 use super::fit::{Fit, Penalty};
 use super::per_channel::PerChannel;
-use super::plan::{Method, Plan};
+use super::plan::{self, Method, Plan};
 use super::result::{self, Outcome};
 use super::ridge::{self, CHOICES, MAX_FITS, MIXED};
 use super::trust::{self, Centre, Judge, Mixture};
@@ -34,12 +34,13 @@ enum System<'a, R> {
     Dual(Dual<'a, R>),
 }
 
-/// How many numbers [`fit`] takes from its arena, for up to `n` samples.
-pub(crate) fn size(n: usize, dual: bool, columns: usize, channels: usize) -> Option<usize> {
-    let gram = if dual { 0 } else { packed_len(columns) };
-    let dual = if dual { dual::len(n, channels)? } else { 0 };
-    let systems = gram + columns * (1 + channels) + MAX_FITS * columns * channels;
-    systems.checked_add(normal::fit_len(columns, channels).max(dual))
+/// How many numbers [`fit`] takes from its arena, coefficients apart, for up to `n` samples: few may take more than
+/// many, by the dual.
+pub(crate) fn size(config: &Config, n: usize, columns: usize, channels: usize) -> usize {
+    let short = n.min(plan::most_dual(config, columns));
+    let system = packed_len(columns) + columns * channels;
+    let primal = if n > short { system + normal::fit_len(columns, channels) } else { 0 };
+    columns + primal.max(dual::len(short, channels))
 }
 
 /// Makes and weighs the fits of a method. `coefficients`, if wanted, gets the blended fit's, a row for each channel.

@@ -20,10 +20,15 @@ use crate::rows::rows_mut;
 
 /// Total ridge strengths: not per sample, as the fits of few samples need them most.
 const STRENGTHS: [f64; 2] = [0.1, 1.0];
-/// The number of fits.
+/// The most fits.
 const FITS: usize = STRENGTHS.len();
 /// Trust in a fit is its prediction error, relative to the mean's, to the power of minus this times the sample count.
 const SHARPNESS: f64 = 0.25;
+
+/// How many fits there are: those of a strength of the caller's would all be the same.
+fn fits(ridge: Ridge) -> usize {
+    if matches!(ridge, Ridge::Fixed(_)) { 1 } else { FITS }
+}
 
 /// Where an incremental estimate stands.
 #[derive(Clone, Copy, Debug, Default)]
@@ -70,8 +75,8 @@ impl<R: Real> Progress<R> {
                     judge.weigh(self.plain_error, &self.errors, &Default::default(), FITS).1
                 }
             };
-            let fits = self.errors.iter_mut().zip(&self.intercepts).zip(weights).enumerate();
-            for (fit, ((errors, &intercepts), weights)) in fits {
+            let each = self.errors.iter_mut().zip(&self.intercepts).zip(weights).enumerate();
+            for (fit, ((errors, &intercepts), weights)) in each.take(fits(ridge)) {
                 let slopes = PerChannel::of(channels, |channel| {
                     let b = row_at(coefficients, p.len(), fit * channels + channel);
                     b.iter().zip(p).fold(R::ZERO, |sum, (&b, &p)| sum + b * p)
@@ -115,8 +120,8 @@ impl<R: Real> Progress<R> {
             ridge::penalties(config, &basis, |j| sums.mean_square(j), penalties);
         }
         let centred = Centred::new(&sums, &mut arena);
-        let fits = rows_mut(coefficients, layout.coefficients()).zip(strengths).zip(&mut self.intercepts);
-        for ((coefficients, strength), intercepts) in fits {
+        let each = rows_mut(coefficients, layout.coefficients()).zip(strengths).zip(&mut self.intercepts);
+        for ((coefficients, strength), intercepts) in each.take(fits(config.ridge)) {
             let penalty = Penalty { strength, relative: penalties };
             centred.normal.solve(penalty, coefficients, &mut arena.scratch());
             *intercepts = centred.intercepts(coefficients);

@@ -3,13 +3,14 @@
 //! If the samples are even as a whole, what a fold lacks and what the others have does not cancel: the fits then
 //! count for less.
 
-use super::config::{Config, Solver};
+use super::config::Config;
 use super::design::{self, Design};
 use super::fitter;
 use super::folds::Fold;
 use super::per_channel::PerChannel;
 use super::plan::Plan;
 use super::result::Outcome;
+use super::ridge::MAX_FITS;
 use super::samples::{Reader, Subset};
 use super::sums;
 use crate::arena::Arena;
@@ -24,11 +25,9 @@ pub(crate) fn size(config: &Config, columns: usize, channels: usize, n: usize) -
     // The largest training set leaves out the smallest fold, and the held-out fold is no larger than that.
     let train = n - n / config.fold_count();
     let designs = design::size(train, columns, channels)?.checked_mul(2)?;
-    let primal = fitter::size(train, false, columns, channels)?;
-    // Training sets differ in size, and skipped samples make them smaller: some may be short where the largest is not.
-    let short = if config.solver == Solver::Dual { train } else { train.min(columns) };
-    let dual = fitter::size(short, true, columns, channels)?;
-    primal.max(dual).checked_add(designs)?.checked_add(columns * channels)
+    // Coefficients of each fit, and of all together.
+    let coefficients = (MAX_FITS + 1) * columns * channels;
+    designs.checked_add(fitter::size(config, train, columns, channels) + coefficients)
 }
 
 /// The estimate over `config.folds` folds. `whole` holds all samples.

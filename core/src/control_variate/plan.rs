@@ -70,6 +70,16 @@ pub(crate) fn check_stream(config: &Config) -> Result<(), Error> {
     if needs_samples || config.solver == Solver::Dual { Err(Error::Unsupported) } else { Ok(()) }
 }
 
+/// The most samples whose fits go through their n x n system.
+pub(crate) fn most_dual(config: &Config, columns: usize) -> usize {
+    match config.solver {
+        // Control functions are all but free of penalty, which the dual divides by.
+        Solver::Auto if config.controls == 0 => columns,
+        Solver::Dual => MAX_DUAL,
+        _ => 0,
+    }
+}
+
 /// How samples in arrays become an estimate.
 #[derive(Clone, Copy)]
 pub(crate) struct Plan {
@@ -83,17 +93,14 @@ pub(crate) struct Plan {
 impl Plan {
     pub(crate) fn new(config: &Config, functions: usize, n: usize) -> Result<Self, Error> {
         let columns = config.controls + functions;
-        let dual = match config.solver {
-            // Control functions are all but free of penalty, which the dual divides by.
-            Solver::Auto => n <= columns && config.controls == 0,
-            Solver::NormalEquations => false,
+        let is_factored = config.estimator == Estimator::LeastSquares && config.ridge != Ridge::Auto;
+        match config.solver {
             Solver::Dual if config.controls > 0 => return Err(Error::Unsupported),
             Solver::Dual if n > MAX_DUAL => return Err(Error::Range),
-            Solver::Dual => true,
-            Solver::SquareRoot if config.estimator == Estimator::LeastSquares && config.ridge != Ridge::Auto => false,
-            Solver::SquareRoot => return Err(Error::Unsupported),
-        };
-        let method = Method::of(config, columns);
+            Solver::SquareRoot if !is_factored => return Err(Error::Unsupported),
+            _ => {}
+        }
+        let (method, dual) = (Method::of(config, columns), n <= most_dual(config, columns));
         Ok(Self { method, columns: if method == Method::Plain { 0 } else { columns }, dual })
     }
 }

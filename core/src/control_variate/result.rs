@@ -15,7 +15,7 @@ use core::hint::black_box;
 pub(crate) struct Outcome<R> {
     /// What to add to the plain mean.
     pub(crate) correction: PerChannel<R>,
-    /// The variance of the estimate; None, which is to say the plain mean's, if the samples are too few to tell.
+    /// The variance of the estimate; None for the plain mean's, also where the samples are too few to tell another.
     pub(crate) variance: Option<PerChannel<R>>,
 }
 

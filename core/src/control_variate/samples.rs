@@ -1,14 +1,12 @@
 //! What the caller hands over: positions, values, and control functions at those positions.
 
-use super::config::Config;
+use super::config::{Color, Config, NonFinite};
+use super::folds::Fold;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::error::Error;
 use crate::lanes::{LANES, Lanes};
 use crate::real::Real;
 use crate::rows::{first, from, halves_mut, row_at};
-
-use super::config::{Color, NonFinite};
-use super::folds::Fold;
 
 /// Rec. 709 luminance of linear RGB.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];

@@ -52,7 +52,8 @@ const DOUBT: f64 = 6.0;
 pub(crate) struct Centre<R> {
     f: R,
     freedom: R,
-    /// What the error of the fit's coefficients adds to the variance of its estimate, and of its own estimate.
+    /// The factor, (1 + q) times [`few_left`], that a variance takes which residuals tell: for the error of the fit's
+    /// coefficients, and for how few samples are left to tell it.
     pub(crate) inflation: R,
 }
 

@@ -5,7 +5,7 @@ use super::{Fit, Penalty};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt::Ldlt;
-use crate::matrix::{Panel, Triangle, at, copy};
+use crate::matrix::{Panel, Triangle, at, copy, packed_len};
 use crate::real::{Real, rounding};
 
 /// The matrix K = P D^-1 P' over all columns, for relative penalties D, and g = P D^-1 m.
@@ -14,11 +14,10 @@ pub(crate) struct Dual<'a, R> {
     shift: &'a mut [R],
 }
 
-/// Numbers that a dual system of `n` samples and its fits take from their arena.
-pub(crate) fn len(n: usize, channels: usize) -> Option<usize> {
-    let padded = n.checked_next_multiple_of(LANES)?;
-    let triangle = padded.checked_mul(padded + 1)? / 2;
-    triangle.checked_mul(3)?.checked_add(padded * (3 + channels))
+/// Numbers that a dual system of `n` samples, not many, and its fits take from their arena.
+pub(crate) fn len(n: usize, channels: usize) -> usize {
+    let padded = n.next_multiple_of(LANES);
+    packed_len(padded) + padded + 2 * packed_len(n) + n * (2 + channels)
 }
 
 impl<'a, R: Real> Dual<'a, R> {

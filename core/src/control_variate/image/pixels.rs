@@ -3,6 +3,10 @@
 use super::terms::MAX_AXES;
 use crate::control_variate::Config;
 use crate::error::Error;
+use core::ffi::CStr;
+
+/// What is said of too many pixels.
+const MOST: &CStr = c"pixels must be at most 2^30 - 1, all frames together";
 
 /// The pixels of an image, or of a part of one, and what is known of them. `Image::new(width, height)` knows nothing.
 ///
@@ -131,6 +135,15 @@ impl Image<'_> {
         Self { unordered: true, ..Self::new(pixels, 1) }
     }
 
+    /// Checks its size, its windows and its parts; of arrays only whether there are any.
+    ///
+    /// # Errors
+    /// The rule that is broken in words, with the NUL that C needs: [`Error::Range`] of all else.
+    pub fn check_windows(&self) -> Result<(), &'static CStr> {
+        self.placed()?;
+        self.pixels().map_err(|_| MOST).map(|_| ())
+    }
+
     /// How many pixels the arrays hold, and how many are estimated, in all frames.
     ///
     /// # Errors
@@ -167,8 +180,20 @@ impl Image<'_> {
 
     /// Where its windows lie.
     pub(super) fn windows(&self) -> Result<Windows, Error> {
+        self.placed().map_err(|_| Error::Range)
+    }
+
+    /// The same, or the rule that is broken.
+    fn placed(&self) -> Result<Windows, &'static CStr> {
+        let rule = |is_kept: bool, words: &'static CStr| if is_kept { Ok(()) } else { Err(words) };
+        rule(self.width > 0 && self.height > 0, c"width and height must be at least 1")?;
+        let is_whole = self.given.is_empty() && self.wanted.is_empty();
+        rule(is_whole || !self.unordered, c"given and wanted must be all zero where pixels are unordered")?;
         // Pixels without places are a row, and its own window.
-        let image = if self.unordered { [self.pixels()?, 1, 1] } else { [self.width, self.height, self.frames()] };
+        let image = match self.unordered {
+            true => [self.pixels().map_err(|_| MOST)?, 1, 1],
+            false => [self.width, self.height, self.frames()],
+        };
         let [across, down, frames] = image;
         let all = Rectangle::new(0, 0, across, down);
         let given = if self.given.is_empty() { all } else { self.given };
@@ -177,17 +202,21 @@ impl Image<'_> {
         let side = if self.unordered { across } else { or(self.window, 8) };
         let stride = if self.unordered { across } else { or(self.stride, side.div_ceil(2)) };
         let (width, height) = (side.min(across), side.min(down));
-        let pixels = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(frames)).ok_or(Error::Range)?;
-        let is_limited = !self.unordered || !self.surfaces.is_empty();
-        let is_whole = self.given.is_empty() && self.wanted.is_empty();
-        let fits = pixels > 0 && !(is_limited && pixels > Self::MAX_WINDOW) && (is_whole || !self.unordered);
-        if !fits || stride > side || !given.is_within(&all) || !wanted.is_within(&given) {
-            return Err(Error::Range);
+        let is_small = width.saturating_mul(height).saturating_mul(frames) <= Self::MAX_WINDOW;
+        if self.unordered {
+            let is_kept = is_small || self.surfaces.is_empty();
+            rule(is_kept, c"pixels with surfaces must be at most 1024 where they are unordered")?;
+        } else {
+            rule(is_small, c"window must be at most 1024 pixels, all frames together")?;
         }
+        rule(stride <= side, c"stride must be at most window")?;
+        rule(given.is_within(&all), c"given must lie in the image, and have pixels")?;
+        rule(wanted.is_within(&given), c"wanted must lie in what is given, and have pixels")?;
         let (extent, is_ordered) = ([width, height, frames], !self.unordered);
         let mut windows = Windows { extent, stride, image, is_ordered, given, wanted, used: Rectangle::default() };
         windows.used = windows.with_pixels(&wanted);
-        if windows.needed().is_within(&given) { Ok(windows) } else { Err(Error::Range) }
+        let is_enough = windows.needed().is_within(&given);
+        rule(is_enough, c"given must hold the windows of wanted whole: see nf_cv_image_needed()").map(|()| windows)
     }
 
     pub(super) fn frames(&self) -> usize {
