@@ -1,4 +1,4 @@
-//! All pointer checks: raw pointers in, references or a status out.
+//! Pointer checks: raw pointers in, references or a status out.
 //!
 //! Lengths are checked against `isize::MAX` bytes, alignment against the element type, before any slice is made.
 //!
@@ -14,17 +14,22 @@ use noisefloor_core::real::Real;
 /// Where an object will be: to be written, never read.
 pub(crate) type Room<T> = MaybeUninit<T>;
 
+/// Whether an object can be there, for all that its address says.
+#[inline(always)]
+pub(crate) fn usable<T>(pointer: *const T) -> Result<(), nf_status> {
+    match (pointer.is_null(), pointer.is_aligned()) {
+        (true, _) => Err(NF_ERR_NULL),
+        (false, true) => Ok(()),
+        (false, false) => Err(NF_ERR_ALIGNMENT),
+    }
+}
+
 /// A shared reference to one object.
 ///
 /// # Safety
 /// A non-NULL, aligned `pointer` must point to an initialised `T` that no one writes to during `'a`.
 pub(crate) unsafe fn reference<'a, T>(pointer: *const T) -> Result<&'a T, nf_status> {
-    if pointer.is_null() {
-        return Err(NF_ERR_NULL);
-    }
-    if !pointer.is_aligned() {
-        return Err(NF_ERR_ALIGNMENT);
-    }
+    usable(pointer)?;
     // SAFETY: not NULL and aligned as just checked; the rest is the caller's promise.
     Ok(unsafe { &*pointer })
 }
@@ -34,12 +39,7 @@ pub(crate) unsafe fn reference<'a, T>(pointer: *const T) -> Result<&'a T, nf_sta
 /// # Safety
 /// As for [`reference`], and no one else may read or write the object during `'a`.
 pub(crate) unsafe fn reference_mut<'a, T>(pointer: *mut T) -> Result<&'a mut T, nf_status> {
-    if pointer.is_null() {
-        return Err(NF_ERR_NULL);
-    }
-    if !pointer.is_aligned() {
-        return Err(NF_ERR_ALIGNMENT);
-    }
+    usable(pointer)?;
     // SAFETY: not NULL and aligned as just checked; the rest is the caller's promise.
     Ok(unsafe { &mut *pointer })
 }
@@ -116,6 +116,7 @@ pub(crate) trait AnyBits: Copy {}
 
 impl AnyBits for u8 {}
 impl AnyBits for u32 {}
+impl AnyBits for i64 {}
 impl AnyBits for f32 {}
 
 /// `len` numbers that the core will write, through the slices of its safe interface; clearing them first would cost
@@ -141,12 +142,7 @@ pub(crate) unsafe fn outputs<'a, T: AnyBits>(pointer: *mut T, len: usize) -> Res
 /// # Safety
 /// A non-NULL `memory` must be the start of `bytes` bytes that no one else uses.
 pub(crate) unsafe fn memory(memory: *mut c_void, bytes: usize, needed: usize) -> Result<*mut u8, nf_status> {
-    if memory.is_null() {
-        return Err(NF_ERR_NULL);
-    }
-    if !memory.cast::<u64>().is_aligned() {
-        return Err(NF_ERR_ALIGNMENT);
-    }
+    usable(memory.cast::<u64>())?;
     if bytes < needed || needed > isize::MAX as usize {
         return Err(NF_ERR_MEMORY);
     }
@@ -203,12 +199,7 @@ pub(crate) fn product(a: usize, b: usize) -> Result<usize, nf_status> {
 }
 
 fn check<T>(pointer: *const T, len: usize) -> Result<(), nf_status> {
-    if pointer.is_null() {
-        return Err(NF_ERR_NULL);
-    }
-    if !pointer.is_aligned() {
-        return Err(NF_ERR_ALIGNMENT);
-    }
+    usable(pointer)?;
     match len.checked_mul(size_of::<T>()) {
         Some(bytes) if bytes <= isize::MAX as usize => Ok(()),
         _ => Err(NF_ERR_RANGE),
