@@ -9,7 +9,6 @@
 use crate::status::*;
 use core::ffi::c_void;
 use core::mem::MaybeUninit;
-use noisefloor_core::real::Real;
 
 /// Where an object will be: to be written, never read.
 pub(crate) type Room<T> = MaybeUninit<T>;
@@ -118,6 +117,7 @@ impl AnyBits for u8 {}
 impl AnyBits for u32 {}
 impl AnyBits for i64 {}
 impl AnyBits for f32 {}
+impl AnyBits for f64 {}
 
 /// `len` numbers that the core will write, through the slices of its safe interface; clearing them first would cost
 /// time, and an error must leave them as they are. A zero length gives an empty slice whatever the pointer.
@@ -149,11 +149,11 @@ pub(crate) unsafe fn memory(memory: *mut c_void, bytes: usize, needed: usize) ->
     Ok(memory.cast())
 }
 
-/// `len` numbers of workspace, cleared: the caller's memory may never have been written.
+/// `len` numbers of workspace: some numbers, as [`outputs`] says, which the core writes before it reads them.
 ///
 /// # Safety
-/// As for [`memory`], and all zeros must be a `T`.
-pub(crate) unsafe fn workspace<'a, T: Real>(
+/// As for [`outputs`], of `bytes` bytes.
+pub(crate) unsafe fn workspace<'a, T: AnyBits>(
     workspace: *mut c_void,
     bytes: usize,
     len: usize,
@@ -162,12 +162,8 @@ pub(crate) unsafe fn workspace<'a, T: Real>(
     if needed == 0 {
         return Ok(&mut []);
     }
-    // SAFETY: the caller's promise; the memory is aligned to 8 bytes and long enough.
-    unsafe {
-        let start = memory(workspace, bytes, needed)?;
-        start.write_bytes(0, needed);
-        Ok(core::slice::from_raw_parts_mut(start.cast(), len))
-    }
+    // SAFETY: passed on to the caller; the memory is aligned to 8 bytes and long enough.
+    unsafe { outputs(memory(workspace, bytes, needed)?.cast(), len) }
 }
 
 /// The bytes of an object in caller memory: an `H`, and `len` `T` right behind it. 0 for a `len` of 0 or a size no
