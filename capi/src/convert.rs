@@ -16,11 +16,10 @@ pub(crate) type Room<T> = MaybeUninit<T>;
 /// Whether an object can be there, for all that its address says.
 #[inline(always)]
 pub(crate) fn usable<T>(pointer: *const T) -> Result<(), nf_status> {
-    match (pointer.is_null(), pointer.is_aligned()) {
-        (true, _) => Err(NF_ERR_NULL),
-        (false, true) => Ok(()),
-        (false, false) => Err(NF_ERR_ALIGNMENT),
+    if pointer.is_null() {
+        return Err(NF_ERR_NULL);
     }
+    if pointer.is_aligned() { Ok(()) } else { Err(NF_ERR_ALIGNMENT) }
 }
 
 /// A shared reference to one object.
