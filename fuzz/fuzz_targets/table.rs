@@ -170,8 +170,11 @@ fuzz_target!(|input: Input| {
                 Ok(())
             }
             Operation::Load(bytes) => {
-                if let Ok(items) = check_saved(bytes) {
-                    load(bytes, items);
+                if let Ok(items) = saved_items(bytes) {
+                    let (q, sums) = memory(items);
+                    if Owned::load(q, sums, bytes).is_ok() {
+                        load(bytes, items);
+                    }
                 }
                 Ok(())
             }
