@@ -1,4 +1,4 @@
-//! All pointer checks: raw pointers in, references or a status out.
+//! Pointer checks: raw pointers in, references or a status out.
 //!
 //! Lengths are checked against `isize::MAX` bytes, alignment against the element type, before any slice is made.
 //!
@@ -9,22 +9,25 @@
 use crate::status::*;
 use core::ffi::c_void;
 use core::mem::MaybeUninit;
-use noisefloor_core::real::Real;
 
 /// Where an object will be: to be written, never read.
 pub(crate) type Room<T> = MaybeUninit<T>;
+
+/// Whether an object can be there, for all that its address says.
+#[inline(always)]
+pub(crate) fn usable<T>(pointer: *const T) -> Result<(), nf_status> {
+    if pointer.is_null() {
+        return Err(NF_ERR_NULL);
+    }
+    if pointer.is_aligned() { Ok(()) } else { Err(NF_ERR_ALIGNMENT) }
+}
 
 /// A shared reference to one object.
 ///
 /// # Safety
 /// A non-NULL, aligned `pointer` must point to an initialised `T` that no one writes to during `'a`.
 pub(crate) unsafe fn reference<'a, T>(pointer: *const T) -> Result<&'a T, nf_status> {
-    if pointer.is_null() {
-        return Err(NF_ERR_NULL);
-    }
-    if !pointer.is_aligned() {
-        return Err(NF_ERR_ALIGNMENT);
-    }
+    usable(pointer)?;
     // SAFETY: not NULL and aligned as just checked; the rest is the caller's promise.
     Ok(unsafe { &*pointer })
 }
@@ -34,12 +37,7 @@ pub(crate) unsafe fn reference<'a, T>(pointer: *const T) -> Result<&'a T, nf_sta
 /// # Safety
 /// As for [`reference`], and no one else may read or write the object during `'a`.
 pub(crate) unsafe fn reference_mut<'a, T>(pointer: *mut T) -> Result<&'a mut T, nf_status> {
-    if pointer.is_null() {
-        return Err(NF_ERR_NULL);
-    }
-    if !pointer.is_aligned() {
-        return Err(NF_ERR_ALIGNMENT);
-    }
+    usable(pointer)?;
     // SAFETY: not NULL and aligned as just checked; the rest is the caller's promise.
     Ok(unsafe { &mut *pointer })
 }
@@ -116,7 +114,9 @@ pub(crate) trait AnyBits: Copy {}
 
 impl AnyBits for u8 {}
 impl AnyBits for u32 {}
+impl AnyBits for i64 {}
 impl AnyBits for f32 {}
+impl AnyBits for f64 {}
 
 /// `len` numbers that the core will write, through the slices of its safe interface; clearing them first would cost
 /// time, and an error must leave them as they are. A zero length gives an empty slice whatever the pointer.
@@ -141,23 +141,18 @@ pub(crate) unsafe fn outputs<'a, T: AnyBits>(pointer: *mut T, len: usize) -> Res
 /// # Safety
 /// A non-NULL `memory` must be the start of `bytes` bytes that no one else uses.
 pub(crate) unsafe fn memory(memory: *mut c_void, bytes: usize, needed: usize) -> Result<*mut u8, nf_status> {
-    if memory.is_null() {
-        return Err(NF_ERR_NULL);
-    }
-    if !memory.cast::<u64>().is_aligned() {
-        return Err(NF_ERR_ALIGNMENT);
-    }
+    usable(memory.cast::<u64>())?;
     if bytes < needed || needed > isize::MAX as usize {
         return Err(NF_ERR_MEMORY);
     }
     Ok(memory.cast())
 }
 
-/// `len` numbers of workspace, cleared: the caller's memory may never have been written.
+/// `len` numbers of workspace: some numbers, as [`outputs`] says, which the core writes before it reads them.
 ///
 /// # Safety
-/// As for [`memory`], and all zeros must be a `T`.
-pub(crate) unsafe fn workspace<'a, T: Real>(
+/// As for [`outputs`], of `bytes` bytes.
+pub(crate) unsafe fn workspace<'a, T: AnyBits>(
     workspace: *mut c_void,
     bytes: usize,
     len: usize,
@@ -166,12 +161,8 @@ pub(crate) unsafe fn workspace<'a, T: Real>(
     if needed == 0 {
         return Ok(&mut []);
     }
-    // SAFETY: the caller's promise; the memory is aligned to 8 bytes and long enough.
-    unsafe {
-        let start = memory(workspace, bytes, needed)?;
-        start.write_bytes(0, needed);
-        Ok(core::slice::from_raw_parts_mut(start.cast(), len))
-    }
+    // SAFETY: passed on to the caller; the memory is aligned to 8 bytes and long enough.
+    unsafe { outputs(memory(workspace, bytes, needed)?.cast(), len) }
 }
 
 /// The bytes of an object in caller memory: an `H`, and `len` `T` right behind it. 0 for a `len` of 0 or a size no
@@ -203,12 +194,7 @@ pub(crate) fn product(a: usize, b: usize) -> Result<usize, nf_status> {
 }
 
 fn check<T>(pointer: *const T, len: usize) -> Result<(), nf_status> {
-    if pointer.is_null() {
-        return Err(NF_ERR_NULL);
-    }
-    if !pointer.is_aligned() {
-        return Err(NF_ERR_ALIGNMENT);
-    }
+    usable(pointer)?;
     match len.checked_mul(size_of::<T>()) {
         Some(bytes) if bytes <= isize::MAX as usize => Ok(()),
         _ => Err(NF_ERR_RANGE),

@@ -4,7 +4,7 @@ use crate::convert;
 use crate::mis::NF_MIS_MAX_TECHNIQUES;
 use crate::status::*;
 use crate::wrong::{Wrong, pick, rule};
-use noisefloor_core::minibatch::importance::{self, Split};
+use noisefloor_core::minibatch::importance::{self, Softmax, Split};
 
 /// nf_importance_gradient split: one importance per group of nodes, the norm over it.
 pub const NF_NODES_NORM: u32 = 0;
@@ -47,17 +47,19 @@ pub unsafe extern "C" fn nf_importance_cross_entropy(
             return Err(NF_ERR_RANGE);
         }
         finite(logits)?;
-        let items = || (0..rows).zip(label).map(|(i, &label)| (row(logits, classes, i), label as usize));
-        for (out, (logits, label)) in importance.into_iter().flatten().zip(items()) {
-            *out = importance::cross_entropy(logits, label);
-        }
-        for (out, (logits, label)) in loss.into_iter().flatten().zip(items()) {
-            *out = importance::cross_entropy_loss(logits, label);
-        }
-        if let Some(gradient) = gradient {
-            for (i, (logits, label)) in items().enumerate() {
-                let out = row_mut(gradient, classes, i);
-                importance::cross_entropy_gradient(logits, label, out).map_err(status_of)?;
+        // Widths that are not 0 for every compiler to see: else there would be a panic.
+        let (mut importance, mut loss) = (importance.into_iter().flatten(), loss.into_iter().flatten());
+        let mut gradient = gradient.into_iter().flat_map(|gradient| gradient.chunks_exact_mut(classes.max(1)));
+        for (logits, &label) in logits.chunks_exact(classes.max(1)).zip(label) {
+            let softmax = Softmax::new(logits, label as usize).map_err(status_of)?;
+            if let Some(out) = importance.next() {
+                *out = softmax.norm();
+            }
+            if let Some(out) = loss.next() {
+                *out = softmax.loss();
+            }
+            if let Some(out) = gradient.next() {
+                out.iter_mut().zip(softmax.gradient()).for_each(|(out, g)| *out = g);
             }
         }
         Ok(())
@@ -89,8 +91,9 @@ pub unsafe extern "C" fn nf_importance_squared_error(
         }
         finite(output)?;
         finite(target)?;
-        for (i, out) in importance.iter_mut().enumerate() {
-            *out = importance::squared_error(row(output, outputs, i), row(target, outputs, i));
+        let pairs = output.chunks_exact(outputs.max(1)).zip(target.chunks_exact(outputs.max(1)));
+        for (out, (output, target)) in importance.iter_mut().zip(pairs) {
+            *out = importance::squared_error(output, target);
         }
         Ok(())
     })())
@@ -121,9 +124,9 @@ pub unsafe extern "C" fn nf_importance_gradient(
         // SAFETY: the caller passes arrays of these lengths, of which the written one is no part of the other.
         let (gradient, importance) = unsafe { (convert::slice(gradient, len)?, convert::outputs(importance, all)?) };
         finite(gradient)?;
-        for i in 0..rows {
-            let out = row_mut(importance, techniques, i);
-            importance::nodes(row(gradient, outputs, i), split, out).map_err(status_of)?;
+        let rows = gradient.chunks_exact(outputs.max(1));
+        for (out, row) in importance.chunks_exact_mut(techniques.max(1)).zip(rows) {
+            importance::nodes(row, split, out).map_err(status_of)?;
         }
         Ok(())
     })())
@@ -151,18 +154,6 @@ pub(crate) fn check_importance(of: &nf_importance_arguments) -> Result<Split, Wr
     let words = c"outputs must be at least techniques, with NF_NODES_SIGN half as many";
     rule(of.outputs >= of.techniques / each, words)?;
     Ok(split)
-}
-
-// `chunks` divides by its width, which panics for zero: not every compiler sees that there is none.
-
-/// Row `i` of a matrix, which has it.
-fn row(matrix: &[f32], width: usize, i: usize) -> &[f32] {
-    matrix.get(i * width..).and_then(|rest| rest.get(..width)).unwrap_or_default()
-}
-
-/// Row `i` of a matrix, which has it.
-fn row_mut(matrix: &mut [f32], width: usize, i: usize) -> &mut [f32] {
-    matrix.get_mut(i * width..).and_then(|rest| rest.get_mut(..width)).unwrap_or_default()
 }
 
 /// Before anything is written.

@@ -8,7 +8,8 @@
 //! stand enums, of which not every pattern of bits is one. Who finds the number takes the rest for what the library
 //! wrote, and the header asks that no one else write there.
 
-use crate::status::{NF_ABI_VERSION, NF_ERR_ALIGNMENT, NF_ERR_NULL, NF_ERR_STATE, nf_status};
+use crate::convert;
+use crate::status::{NF_ABI_VERSION, NF_ERR_STATE, nf_status};
 
 /// The number of objects whose header is an `H`, for the library's version and the target's width of pointers. It is to
 /// stand first.
@@ -33,12 +34,7 @@ pub(crate) const fn magic<H>(name: &str) -> u64 {
 #[inline(always)]
 pub(crate) unsafe fn check<H>(object: *const H, magic: u64) -> Result<(), nf_status> {
     const { assert!(align_of::<H>() >= align_of::<u64>()) };
-    if object.is_null() {
-        return Err(NF_ERR_NULL);
-    }
-    if !object.is_aligned() {
-        return Err(NF_ERR_ALIGNMENT);
-    }
+    convert::usable(object)?;
     // SAFETY: not NULL and aligned, as just checked; the rest is the caller's promise. Any 8 bytes are a number.
     if unsafe { object.cast::<u64>().read() } == magic { Ok(()) } else { Err(NF_ERR_STATE) }
 }

@@ -4,7 +4,7 @@ use crate::convert;
 use crate::magic::{self, magic};
 use crate::mis::NF_MIS_MAX_TECHNIQUES;
 use crate::status::*;
-use crate::wrong::{Wrong, fraction, pick, rule};
+use crate::wrong::{Wrong, part, pick, rule};
 use noisefloor_core::minibatch::{self, Batch};
 use noisefloor_core::mis::{self, DEFAULT_RIDGE, MAX_TECHNIQUES, OptimalMis, Solver};
 
@@ -304,7 +304,7 @@ fn check_counts(counts: &[u32]) -> Result<(), Wrong> {
 }
 
 fn check_beta(beta: f32) -> Result<(), Wrong> {
-    fraction(beta, c"beta must be 0 to 1")
+    part(beta, c"beta must be 0 to 1")
 }
 
 pub(crate) fn solver_of(solver: u32, ridge: f32) -> Result<Solver, Wrong> {

@@ -6,7 +6,7 @@ use crate::rng::{self, nf_rng};
 use crate::status::*;
 use crate::wrong::{Wrong, rule};
 use core::ffi::c_void;
-use noisefloor_core::minibatch::table::{self, State, Table};
+use noisefloor_core::minibatch::table::{self, ARITY, MAX_BLOCKS, State, Table};
 
 /// The importances of the items of a data set, from which minibatches are drawn (Algorithm 3).
 ///
@@ -44,13 +44,11 @@ const _: () = assert!(NF_TABLE_SAVED_HEADER as usize == table::HEADER_BYTES);
 const ALIGNMENT: usize = 64;
 /// What aligning memory that is aligned to 8 bytes takes at most.
 const SLACK: usize = ALIGNMENT - 8;
-const BLOCK: usize = 16;
-const MAX_BLOCKS: u32 = 1 << 28;
 
 /// Bytes of memory of a table, at most 4.6 for each item and a few hundred; 0 for 0 items, or if no memory has them.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_table_size(items: u32) -> usize {
-    let blocks = items.div_ceil(BLOCK as u32);
+    let blocks = items.div_ceil(ARITY as u32);
     match (items, parts(blocks)) {
         (1.., Some((importance, sums))) => importance + sums + SLACK,
         _ => 0,
@@ -60,7 +58,7 @@ pub extern "C" fn nf_table_size(items: u32) -> usize {
 /// The bytes of the importances and of the sums of so many blocks, or nothing if no memory has them.
 fn parts(blocks: u32) -> Option<(usize, usize)> {
     // The last block of all would be one item too many.
-    let items = u32::try_from(u64::from(blocks) * BLOCK as u64).unwrap_or(u32::MAX);
+    let items = u32::try_from(u64::from(blocks) * ARITY as u64).unwrap_or(u32::MAX);
     let importance = table::importance_len(items).checked_mul(size_of::<f32>())?;
     let sums = table::sums_len(items).checked_mul(size_of::<i64>())?;
     let all = importance.checked_add(sums)?.checked_add(SLACK)?;
@@ -81,7 +79,7 @@ pub unsafe extern "C" fn nf_table_init(
     importance: *const f32,
 ) -> nf_status {
     status((|| {
-        check_place(table)?;
+        convert::usable(table)?;
         if items == 0 {
             return Err(NF_ERR_RANGE);
         }
@@ -90,13 +88,6 @@ pub unsafe extern "C" fn nf_table_init(
             // SAFETY: the caller passes as many importances as items.
             false => Some(unsafe { convert::slice(importance, items as usize) }?),
         };
-        // Before anything is written.
-        if let Some(values) = values {
-            table::check_importances(values).map_err(status_of)?;
-            if values.iter().all(|&q| q == 0.0) {
-                return Err(NF_ERR_NO_SAMPLES);
-            }
-        }
         // SAFETY: the caller passes memory that no one else uses.
         let (importance, sums, blocks) = unsafe { room(memory, bytes, items) }?;
         let made = Table::new(importance, sums, items, values).map_err(status_of)?;
@@ -237,12 +228,7 @@ pub unsafe extern "C" fn nf_table_probabilities(
         // SAFETY: the caller passes a table that no one writes meanwhile, and `count` items.
         let (table, index) = unsafe { (open(table)?, convert::slice(index, count as usize)?) };
         let Some(last) = count.checked_sub(1) else { return Ok(()) };
-        if p.is_null() {
-            return Err(NF_ERR_NULL);
-        }
-        if !p.is_aligned() {
-            return Err(NF_ERR_ALIGNMENT);
-        }
+        convert::usable(p)?;
         let bytes = convert::product(last as usize, stride as usize)?.checked_mul(size_of::<f32>());
         if stride == 0 || bytes.is_none_or(|bytes| bytes >= isize::MAX as usize) {
             return Err(NF_ERR_RANGE);
@@ -251,7 +237,7 @@ pub unsafe extern "C" fn nf_table_probabilities(
         let mut place = p;
         for index in index.chunks(64) {
             let mut probability = [0.0; 64];
-            table.probabilities(index, 1, &mut probability).map_err(status_of)?;
+            table.probabilities(index, &mut probability).map_err(status_of)?;
             for &value in probability.iter().take(index.len()) {
                 // SAFETY: the caller passes room for the last of them. Those between are another's: no slice may cover
                 // them.
@@ -287,10 +273,10 @@ pub unsafe extern "C" fn nf_table_load(
     len: usize,
 ) -> nf_status {
     status((|| {
-        check_place(table)?;
+        convert::usable(table)?;
         // SAFETY: the caller passes `len` bytes.
         let saved = unsafe { convert::slice(saved.cast::<u8>(), len) }?;
-        let items = table::check_saved(saved).map_err(status_of)?;
+        let items = table::saved_items(saved).map_err(status_of)?;
         // SAFETY: the caller passes memory that no one else uses.
         let (importance, sums, blocks) = unsafe { room(memory, bytes, items) }?;
         let state = Table::load(importance, sums, saved).map_err(status_of)?.state();
@@ -383,7 +369,7 @@ pub(crate) unsafe fn check_table(table: &nf_table) -> Result<(), Wrong> {
 /// How many importances and sums a table's memory has.
 fn lengths(table: &nf_table) -> Result<(usize, usize), Wrong> {
     rule((0.0..=1.0).contains(&table.uniform_fraction), c"uniform_fraction must be 0 to 1")?;
-    if table.magic != MAGIC || table.importance.is_null() || table.blocks > MAX_BLOCKS {
+    if table.magic != MAGIC || table.importance.is_null() || table.blocks as usize > MAX_BLOCKS {
         return Err(NO_TABLE);
     }
     let (importance, sums) = parts(table.blocks).ok_or(NO_TABLE)?;
@@ -394,15 +380,7 @@ fn lengths(table: &nf_table) -> Result<(usize, usize), Wrong> {
     Ok((importance / size_of::<f32>(), sums / size_of::<i64>()))
 }
 
-/// Whether a struct can be written there, before anything else is.
-fn check_place(table: *const nf_table) -> Result<(), nf_status> {
-    if table.is_null() {
-        return Err(NF_ERR_NULL);
-    }
-    if table.is_aligned() { Ok(()) } else { Err(NF_ERR_ALIGNMENT) }
-}
-
-/// Memory for at least `items` items, divided, cleared, and how many blocks it has room for.
+/// Memory for at least `items` items, divided, and how many blocks it has room for.
 ///
 /// # Safety
 /// A non-NULL `memory` must be the start of `bytes` bytes that no one else uses during `'a`.
@@ -419,7 +397,7 @@ unsafe fn room<'a>(
     unsafe { convert::memory(memory, bytes, needed) }?;
     let fits = |blocks| parts(blocks).is_some_and(|(importance, sums)| importance + sums + SLACK <= bytes);
     // The most blocks that fit, by bisection: those of `items` do, one more than the most there can be does not.
-    let (mut fit, mut not) = (items.div_ceil(BLOCK as u32), MAX_BLOCKS + 1);
+    let (mut fit, mut not) = (items.div_ceil(ARITY as u32), MAX_BLOCKS as u32 + 1);
     while not - fit > 1 {
         let middle = fit + (not - fit) / 2;
         if fits(middle) { fit = middle } else { not = middle }
@@ -427,12 +405,11 @@ unsafe fn room<'a>(
     let (importance, sums) = parts(fit).ok_or(NF_ERR_MEMORY)?;
     let start = aligned(memory);
     // SAFETY: `start` is aligned for both, and at most SLACK bytes behind the start of memory that holds as much and
-    // both. All zero bits are numbers.
+    // both.
     unsafe {
-        start.write_bytes(0, importance + sums);
         Ok((
-            convert::slice_mut(start.cast(), importance / size_of::<f32>())?,
-            convert::slice_mut(start.add(importance).cast(), sums / size_of::<i64>())?,
+            convert::outputs(start.cast(), importance / size_of::<f32>())?,
+            convert::outputs(start.add(importance).cast(), sums / size_of::<i64>())?,
             fit,
         ))
     }

@@ -24,7 +24,7 @@ pub(crate) fn pick<T: Copy>(value: u32, choices: &[T], words: &'static CStr) -> 
 }
 
 /// A number from 0 to 1.
-pub(crate) fn fraction(value: f32, words: &'static CStr) -> Result<(), Wrong> {
+pub(crate) fn part(value: f32, words: &'static CStr) -> Result<(), Wrong> {
     let status = if value.is_finite() { NF_ERR_RANGE } else { NF_ERR_NOT_FINITE };
     if (0.0..=1.0).contains(&value) { Ok(()) } else { Err(Wrong(status, words)) }
 }

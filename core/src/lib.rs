@@ -64,7 +64,7 @@ pub mod minibatch;
 pub mod mis;
 #[cfg(any(feature = "sampler", feature = "tile"))]
 mod pixels;
-#[cfg(feature = "control-variate")]
+#[cfg(any(feature = "control-variate", feature = "minibatch"))]
 pub mod processor;
 #[cfg(any(feature = "control-variate", feature = "mis"))]
 pub mod real;

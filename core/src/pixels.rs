@@ -11,6 +11,33 @@ pub trait PixelSampler {
     fn draw_pixel(&self, place: [u32; 2], dims: usize, stride: usize, u: &mut [f32]);
 }
 
+/// What samplers do by their `draw`, `draw_samples` and `moved`.
+macro_rules! draws {
+    ($sampler:ty) => {
+        impl $sampler {
+            /// As [`draw`](Self::draw), as many numbers as `u` has room for, at most 4; more stay as they are.
+            #[inline]
+            pub fn draw_into(&self, u: &mut [f32]) {
+                match u {
+                    [a] => [*a] = self.draw(),
+                    [a, b] => [*a, *b] = self.draw(),
+                    [a, b, c] => [*a, *b, *c] = self.draw(),
+                    [a, b, c, d, ..] => [*a, *b, *c, *d] = self.draw(),
+                    [] => {}
+                }
+            }
+        }
+
+        impl $crate::pixels::PixelSampler for $sampler {
+            #[inline]
+            fn draw_pixel(&self, [x, y]: [u32; 2], dims: usize, stride: usize, u: &mut [f32]) {
+                self.moved(x, y, 0).draw_samples(dims, stride, u);
+            }
+        }
+    };
+}
+pub(crate) use draws;
+
 /// How many numbers [`fill`] writes; `None` for dims outside 1 to 4, or for more than memory holds.
 pub fn fill_len<S>(
     domains: impl IntoIterator<Item = impl Borrow<(S, usize)>>,

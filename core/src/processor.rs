@@ -15,7 +15,8 @@ pub trait Processor {
     fn run<S: Step>(step: S) -> S::Output;
 }
 
-/// Every processor of the target.
+/// Every processor of the target: plain Rust.
+#[derive(Clone, Copy, Debug)]
 pub struct Portable;
 
 impl Processor for Portable {

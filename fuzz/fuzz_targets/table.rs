@@ -3,7 +3,7 @@
 
 use arbitrary::Arbitrary;
 use libfuzzer_sys::fuzz_target;
-use noisefloor::minibatch::table::{Shard, State, allocate, check_saved, importance_len, saved_len, sums_len};
+use noisefloor::minibatch::table::{Shard, State, allocate, importance_len, saved_items, saved_len, sums_len};
 use noisefloor::minibatch::{Table, shuffle};
 use noisefloor::rng::Rng;
 
@@ -161,7 +161,7 @@ fuzz_target!(|input: Input| {
             Operation::Save => {
                 let mut bytes = vec![0; saved_len(table.items())];
                 table.save(&mut bytes).unwrap();
-                assert_eq!(check_saved(&bytes), Ok(table.items()));
+                assert_eq!(saved_items(&bytes), Ok(table.items()));
                 let (loaded, _) = load(&bytes, table.capacity());
                 let (mut index, mut again) = ([0; 70], [0; 70]);
                 let result = table.draw(&mut Rng::seed(1), &mut index, None);
@@ -170,8 +170,11 @@ fuzz_target!(|input: Input| {
                 Ok(())
             }
             Operation::Load(bytes) => {
-                if let Ok(items) = check_saved(bytes) {
-                    load(bytes, items);
+                if let Ok(items) = saved_items(bytes) {
+                    let (q, sums) = memory(items);
+                    if Owned::load(q, sums, bytes).is_ok() {
+                        load(bytes, items);
+                    }
                 }
                 Ok(())
             }

@@ -1,7 +1,7 @@
 //! Problems of minibatch gradients, and errors of the gradient's estimates. Seeds are fixed.
 
 use crate::minibatch::{Problem, Z_LIMIT};
-use noisefloor::minibatch::importance::{self, Split};
+use noisefloor::minibatch::importance::{self, Softmax, Split};
 use noisefloor::mis::{DEFAULT_RIDGE, Solver};
 use noisefloor::rng::Rng;
 
@@ -156,7 +156,7 @@ fn classifier(seed: u64, steps: usize) -> (Vec<f32>, Vec<f32>) {
         for (i, (x, out)) in points.iter().zip(out.chunks_mut(5)).enumerate() {
             let logit = |w: &[f64]| w.iter().zip(x).map(|(w, x)| w * x).sum::<f64>() as f32;
             let logits: Vec<f32> = weights.chunks(6).map(logit).collect();
-            importance::cross_entropy_gradient(&logits, i % 5, out).unwrap();
+            out.iter_mut().zip(Softmax::new(&logits, i % 5).unwrap().gradient()).for_each(|(out, g)| *out = g);
         }
         out
     };

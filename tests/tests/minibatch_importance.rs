@@ -1,9 +1,16 @@
 //! Importance functions: against plain f64 and differences of the loss, at the limits, and what they refuse.
 
 use noisefloor::Error;
-use noisefloor::minibatch::importance::{self, Split};
+use noisefloor::minibatch::importance::{self, Softmax, Split};
 use noisefloor::rng::Rng;
 use proptest::prelude::*;
+
+/// The norm over all nodes, NaN where it is refused.
+fn of_all(gradient: &[f32]) -> f32 {
+    let mut norm = [f32::NAN];
+    importance::nodes(gradient, Split::Norm, &mut norm).ok();
+    norm[0]
+}
 
 /// -ln softmax(z)[label], for logits of moderate size.
 fn loss(z: &[f64], label: usize) -> f64 {
@@ -38,14 +45,15 @@ fn cross_entropy_is_the_oracle() {
             for label in [0, classes / 2, classes - 1] {
                 let expected: Vec<f64> =
                     softmax(&z).iter().enumerate().map(|(k, s)| s - f64::from(k == label)).collect();
-                assert_close(importance::cross_entropy(&logits, label), norm(expected.iter().copied()));
-                assert_close(importance::cross_entropy_loss(&logits, label), loss(&z, label));
-                let mut gradient = vec![f32::NAN; classes];
-                importance::cross_entropy_gradient(&logits, label, &mut gradient).unwrap();
+                let softmax = Softmax::new(&logits, label).unwrap();
+                assert_close(softmax.norm(), norm(expected.iter().copied()));
+                assert_close(softmax.loss(), loss(&z, label));
+                let gradient: Vec<f32> = softmax.gradient().collect();
+                assert_eq!(gradient.len(), classes);
                 gradient.iter().zip(&expected).for_each(|(&g, &e)| assert_close(g, e));
                 let sum: f64 = gradient.iter().map(|&g| f64::from(g)).sum();
                 assert!(sum.abs() < 1e-6);
-                assert_close(importance::gradient(&gradient), norm(gradient.iter().map(|&g| g.into())));
+                assert_close(of_all(&gradient), norm(gradient.iter().map(|&g| g.into())));
             }
         }
     }
@@ -58,8 +66,7 @@ fn gradients_are_differences_of_the_loss() {
     for classes in [2, 5, 17] {
         let logits = random(&mut rng, classes, 4.0);
         let label = rng.below(classes as u32) as usize;
-        let mut gradient = vec![0.0; classes];
-        importance::cross_entropy_gradient(&logits, label, &mut gradient).unwrap();
+        let gradient: Vec<f32> = Softmax::new(&logits, label).unwrap().gradient().collect();
         let target = random(&mut rng, classes, 4.0);
         let mut squares = Vec::new();
         for k in 0..classes {
@@ -94,20 +101,18 @@ fn limits() {
         (&[60.0, 0.0], 0, 2f32.sqrt() * 8.756_511e-27, 8.756_511e-27),
     ] {
         let close = |a: f32, b: f32| (a - b).abs() <= 2e-7 * b.abs();
-        assert!(close(importance::cross_entropy(logits, label), norm), "{logits:?}");
-        assert!(close(importance::cross_entropy_loss(logits, label), loss), "{logits:?}");
-        let mut gradient = vec![f32::NAN; logits.len()];
-        importance::cross_entropy_gradient(logits, label, &mut gradient).unwrap();
-        assert!(close(importance::gradient(&gradient), norm), "{logits:?} {gradient:?}");
+        let softmax = Softmax::new(logits, label).unwrap();
+        assert!(close(softmax.norm(), norm), "{logits:?}");
+        assert!(close(softmax.loss(), loss), "{logits:?}");
+        let gradient: Vec<f32> = softmax.gradient().collect();
+        assert!(close(of_all(&gradient), norm), "{logits:?} {gradient:?}");
     }
-    let mut gradient = [f32::NAN; 2];
-    importance::cross_entropy_gradient(&[1e38, -1e38], 1, &mut gradient).unwrap();
-    assert_eq!(gradient, [1.0, -1.0]);
-    assert_close(importance::gradient(&[1e38, -1e38]), 2f64.sqrt() * f64::from(1e38_f32));
+    assert!(Softmax::new(&[1e38, -1e38], 1).unwrap().gradient().eq([1.0, -1.0]));
+    assert_close(of_all(&[1e38, -1e38]), 2f64.sqrt() * f64::from(1e38_f32));
     assert_close(importance::squared_error(&[1e38], &[1.0]), 2.0 * f64::from(1e38_f32));
     assert_eq!(importance::squared_error(&[3e38, -3e38], &[-3e38, 3e38]), f32::MAX);
-    assert_eq!(importance::gradient(&[f32::MAX; 3]), f32::MAX);
-    assert_eq!(importance::gradient(&[1e-45]), 1e-45);
+    assert_eq!(of_all(&[f32::MAX; 3]), f32::MAX);
+    assert_eq!(of_all(&[1e-45]), 1e-45);
     assert_eq!(importance::squared_error(&[1.5], &[1.0]), 1.0);
 }
 
@@ -115,27 +120,20 @@ fn limits() {
 fn wrong_input_is_nan_or_an_error() {
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let values = [0.0, bad];
-        assert!(importance::cross_entropy(&values, 0).is_nan());
-        assert!(importance::cross_entropy_loss(&values, 0).is_nan());
+        assert_eq!(Softmax::new(&values, 0).err(), Some(Error::NotFinite));
         assert!(importance::squared_error(&values, &[0.0; 2]).is_nan());
         assert!(importance::squared_error(&[0.0; 2], &values).is_nan());
-        assert!(importance::gradient(&values).is_nan());
+        assert!(of_all(&values).is_nan());
         let mut out = [7.0; 2];
-        assert_eq!(importance::cross_entropy_gradient(&values, 0, &mut out), Err(Error::NotFinite));
         assert_eq!(importance::nodes(&values, Split::Norm, &mut out), Err(Error::NotFinite));
         assert_eq!(out, [7.0; 2]);
     }
-    assert!(importance::cross_entropy(&[], 0).is_nan());
-    assert!(importance::cross_entropy(&[0.0], 1).is_nan());
-    assert!(importance::cross_entropy_loss(&[0.0], 1).is_nan());
+    assert_eq!(Softmax::new(&[], 0).err(), Some(Error::Range));
+    assert_eq!(Softmax::new(&[0.0], 1).err(), Some(Error::Range));
     assert!(importance::squared_error(&[], &[]).is_nan());
     assert!(importance::squared_error(&[1.0], &[1.0, 2.0]).is_nan());
-    assert!(importance::gradient(&[]).is_nan());
+    assert!(of_all(&[]).is_nan());
     let mut out = [7.0; 34];
-    for (logits, label, len) in [(0, 0, 0), (2, 2, 2), (2, 0, 1), (2, 0, 3)] {
-        let answer = importance::cross_entropy_gradient(&[0.0; 2][..logits], label, &mut out[..len]);
-        assert_eq!(answer, Err(Error::Range));
-    }
     for (nodes, split, techniques) in [
         (20, Split::Norm, 0),
         (20, Split::Norm, 17),
@@ -180,19 +178,15 @@ proptest! {
         let values: Vec<f32> = bits.iter().map(|&bits| f32::from_bits(bits)).collect();
         let finite = values.iter().all(|v| v.is_finite());
         let valid = finite && label < values.len();
-        let n = importance::cross_entropy(&values, label);
-        let right = if valid { (0.0..1.4143).contains(&n) } else { n.is_nan() };
-        prop_assert!(right);
-        let loss = importance::cross_entropy_loss(&values, label);
-        let right = if valid { loss.is_finite() && loss >= 0.0 } else { loss.is_nan() };
-        prop_assert!(right);
-        prop_assert_eq!(importance::gradient(&values).is_finite(), finite);
+        let softmax = Softmax::new(&values, label);
+        prop_assert_eq!(softmax.is_ok(), valid);
+        if let Ok(softmax) = softmax {
+            prop_assert!((0.0..1.4143).contains(&softmax.norm()));
+            prop_assert!(softmax.loss().is_finite() && softmax.loss() >= 0.0);
+            prop_assert!(softmax.gradient().all(|g| g.abs() <= 1.0));
+        }
+        prop_assert_eq!(of_all(&values).is_finite(), finite);
         prop_assert_eq!(importance::squared_error(&values, &values) == 0.0, finite);
-        let mut out = vec![f32::NAN; values.len()];
-        let answer = importance::cross_entropy_gradient(&values, label, &mut out);
-        prop_assert_eq!(answer.is_ok(), valid);
-        let right = out.iter().all(|g| if valid { g.abs() <= 1.0 } else { g.is_nan() });
-        prop_assert!(right);
         let mut out = vec![f32::NAN; techniques];
         let split = if sign { Split::Sign } else { Split::Norm };
         let answer = importance::nodes(&values, split, &mut out);

@@ -16,7 +16,12 @@ const RIDGE: Solver = Solver::Ridge(DEFAULT_RIDGE);
 fn unstructured(techniques: usize) -> Problem {
     let mut rng = Rng::seed(77);
     let gradients: Vec<f32> = (0..300 * 5).map(|_| (2.0 * rng.uniform_f32() - 1.0).powi(3)).collect();
-    let table = |_| gradients.chunks(5).map(|g| f64::from(importance::gradient(g)) * rng.uniform_f64()).collect();
+    let norm = |gradient| {
+        let mut norm = [0.0];
+        importance::nodes(gradient, Split::Norm, &mut norm).unwrap();
+        f64::from(norm[0])
+    };
+    let table = |_| gradients.chunks(5).map(|g| norm(g) * rng.uniform_f64()).collect();
     let tables: Vec<Vec<f64>> = (0..techniques).map(table).collect();
     Problem::new(&tables, 0.2, gradients, 5)
 }

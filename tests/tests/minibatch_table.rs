@@ -4,8 +4,8 @@ use crate::table_support::{Borrowed, lognormal, memory, reloaded, saved, table};
 use noisefloor::Error;
 use noisefloor::minibatch::Table;
 use noisefloor::minibatch::table::{
-    DEFAULT_UNIFORM_FRACTION, Kernel, Portable, Shard, State, allocate, check_importances, check_saved, importance_len,
-    saved_items, saved_len, sums_len,
+    DEFAULT_UNIFORM_FRACTION, Kernel, Portable, Shard, State, allocate, check_importances, importance_len, saved_items,
+    saved_len, sums_len,
 };
 use noisefloor::rng::Rng;
 use noisefloor_tests::random::SplitMix64;
@@ -163,10 +163,8 @@ fn bad_input_is_refused() {
     assert_eq!(table.draw_distinct(&mut rng, &mut index[..2], Some(&mut weight[..3])), Err(Error::Range));
     assert_eq!(table.draw_distinct(&mut rng, &mut [0; 5], None), Err(Error::Range));
     assert_eq!(table.draw_distinct(&mut rng, &mut index[..3], None), Err(Error::NoSamples));
-    assert_eq!(table.probabilities(&[0, 4], 1, &mut p), Err(Error::Range));
-    assert_eq!(table.probabilities(&[0, 1], 0, &mut p), Err(Error::Range));
-    assert_eq!(table.probabilities(&[0, 1], 4, &mut p), Err(Error::Range));
-    assert_eq!(table.probabilities(&[0, 1], usize::MAX, &mut p), Err(Error::Range));
+    assert_eq!(table.probabilities(&[0, 4], &mut p), Err(Error::Range));
+    assert_eq!(table.probabilities(&[0, 1], &mut p[..1]), Err(Error::Range));
     for bad in [f32::NAN, f32::INFINITY] {
         assert_eq!(table.update(&[0, 1], &[1.0, bad], 0.0), Err(Error::NotFinite));
         assert_eq!(table.update(&[0, 1], &[1.0, 1.0], bad), Err(Error::NotFinite));
@@ -196,7 +194,7 @@ fn bad_input_is_refused() {
     assert_eq!(table.draw(&mut rng, &mut index, None), Err(Error::NoSamples));
     assert_eq!(table.draw_stratified(&mut rng, &mut index, None), Err(Error::NoSamples));
     assert_eq!(table.draw_distinct(&mut rng, &mut index, None), Err(Error::NoSamples));
-    assert_eq!(table.probabilities(&[0], 1, &mut p), Err(Error::NoSamples));
+    assert_eq!(table.probabilities(&[0], &mut p), Err(Error::NoSamples));
     assert_eq!((table.probability(0), table.total()), (0.0, 0.0));
     table.set_uniform_fraction(0.01).unwrap();
     table.draw(&mut rng, &mut index, Some(&mut weight)).unwrap();
@@ -254,12 +252,11 @@ fn bad_shards_are_refused() {
 #[test]
 fn damaged_bytes_are_refused() {
     let good = saved(&table(&lognormal(40, 1.0, 1), 0.3));
-    assert_eq!((saved_items(&good), check_saved(&good)), (Ok(40), Ok(40)));
+    assert_eq!(saved_items(&good), Ok(40));
     let load = |bytes: &[u8]| {
         let (mut q, mut sums) = (vec![7.0; 48], vec![7; 16]);
         let result = Borrowed::load(&mut q, &mut sums, bytes).map(|table| table.items());
         assert!(result.is_ok() || q.iter().all(|&q| q == 7.0) && sums.iter().all(|&sum| sum == 7));
-        assert_eq!(result, check_saved(bytes));
         result
     };
     assert_eq!(load(&good), Ok(40));
@@ -269,7 +266,7 @@ fn damaged_bytes_are_refused() {
         let error = load(&bytes).unwrap_err();
         let expected = match bit / 8 {
             0..8 => Error::Foreign,
-            8..12 => Error::Version,
+            8..12 if bit > 64 => Error::Version,
             12..16 => Error::Length,
             _ => Error::Corrupt,
         };
@@ -282,6 +279,8 @@ fn damaged_bytes_are_refused() {
     let small = Borrowed::load(&mut [0.0; 32], &mut [0; 16], &good).map(|table| table.items());
     assert_eq!(small, Err(Error::Memory));
     assert_eq!(saved_items(&good[..15]), Err(Error::Length));
+    // No library has written version 0, as after bit 64, nor a table of no items.
+    assert_eq!(load(&[&good[..12], &[0; 4], &good[16..]].concat()), Err(Error::Corrupt));
 }
 
 /// A sign stands for items that are taken out: none may come in from outside.
@@ -290,7 +289,8 @@ fn zeros_have_no_sign() {
     let mut table = table(&[1.0, 2.0, 3.0], 0.2);
     table.update(&[0, 1], &[-0.0, -0.0], -0.0).unwrap();
     assert!(table.importance(0).is_sign_positive() && table.importance(1).is_sign_positive());
-    assert_eq!(check_saved(&saved(&table)), Ok(3));
+    let loaded = Borrowed::load(&mut [0.0; 16], &mut [0; 16], &saved(&table)).map(|table| table.items());
+    assert_eq!(loaded, Ok(3));
     let mut index = [0; 3];
     table.draw_distinct(&mut Rng::seed(1), &mut index, None).unwrap();
     index.sort_unstable();

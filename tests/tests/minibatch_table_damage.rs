@@ -38,7 +38,7 @@ fn use_it(q: &mut [f32], sums: &mut [i64], state: State, seed: u64) {
     }
     let item = seed as u32 % state.items;
     table.probability(item);
-    table.probabilities(&[item, 0], 1, &mut [0.0; 2]).ok();
+    table.probabilities(&[item, 0], &mut [0.0; 2]).ok();
     table.update(&[item, 0], &[1.0, 2.0], 0.3).ok();
     table.append(&[1.0]).ok();
     table.add_epsilon(0.1).ok();

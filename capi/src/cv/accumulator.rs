@@ -82,14 +82,9 @@ pub unsafe extern "C" fn nf_cv_accumulator_init(
             let state = Accumulator::new(&core).map_err(status_of)?;
             (AnyState::Double(state), state.len() * size_of::<f64>())
         };
-        // SAFETY: the caller's memory, `bytes` long.
-        let memory = unsafe { convert::memory(memory, bytes, HEADER + sums)? };
-        // SAFETY: `memory` is aligned to 8 bytes and holds the header and, cleared, the sums.
-        unsafe {
-            memory.add(HEADER).write_bytes(0, sums);
-            memory.cast::<Header>().write(Header { magic: MAGIC, state });
-        }
-        out.write(memory.cast());
+        let header = Header { magic: MAGIC, state };
+        // SAFETY: the caller passes memory of the size it says; all-zero sums are those of no samples.
+        out.write(unsafe { convert::create(memory, bytes, HEADER + sums, header) }?.cast());
         Ok(())
     })())
 }

@@ -1,6 +1,6 @@
 //! The sampler, by value.
 
-use super::view::{check_tile, core_view, nf_tile};
+use super::view::{check_tile, core_view, live, nf_tile};
 use crate::convert;
 use crate::wrong::{Wrong, rule};
 use noisefloor_core::tile::{Sampler, Shape, Tile};
@@ -77,7 +77,7 @@ pub(crate) unsafe fn check_sampler(sampler: &nf_tile_sampler) -> Result<(), Wron
     rule(sampler.scrambled <= 1, c"scrambled must be 0 or 1")?;
     rule(sampler.tile.is_aligned(), c"tile must be aligned")?;
     // SAFETY: passed on to the caller; it is aligned.
-    let Some(tile) = (unsafe { sampler.tile.as_ref() }) else { return Ok(()) };
+    let Some(tile) = (unsafe { live(sampler.tile) }) else { return Ok(()) };
     check_tile(tile)?;
     let side = tile.size.max(1);
     rule(u32::from(sampler.x) < side && u32::from(sampler.y) < side, c"x and y must be below the tile's size")?;

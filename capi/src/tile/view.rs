@@ -40,9 +40,7 @@ unsafe impl Sync for nf_tile {}
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_tile_from_bytes(bytes: *const c_void, len: usize, out: *mut nf_tile) -> nf_status {
     status((|| {
-        if bytes.is_null() {
-            return Err(NF_ERR_NULL);
-        }
+        convert::usable(bytes)?;
         // SAFETY: the caller passes `len` bytes that no one writes meanwhile.
         let bytes = unsafe { convert::slice(bytes.cast::<u8>(), len) }?;
         let tile = Tile::from_bytes(bytes).map_err(status_of)?;
@@ -70,6 +68,18 @@ pub(crate) fn check_tile(tile: &nf_tile) -> Result<(), Wrong> {
     rule(bytes as u64 == shape.payload_bytes(), c"bytes must be size * size * spp * dims * frames * bits / 8")
 }
 
+/// The tile that a caller's pointer, or a sampler's, is to.
+///
+/// # Safety
+/// A non-NULL `tile` must be aligned and live.
+#[inline(always)]
+pub(super) unsafe fn live<'a>(tile: *const nf_tile) -> Option<&'a nf_tile> {
+    // A sampler's has been stored as a number, which says where the tile is but not that it may be read: see `put`.
+    let tile = core::ptr::with_exposed_provenance::<nf_tile>(tile.expose_provenance());
+    // SAFETY: passed on to the caller.
+    unsafe { tile.as_ref() }
+}
+
 /// The tile as the core sees it; `None` for one without samples, NULL among them, of which every draw is 0.
 ///
 /// # Safety
@@ -77,7 +87,7 @@ pub(crate) fn check_tile(tile: &nf_tile) -> Result<(), Wrong> {
 #[inline(always)]
 pub(crate) unsafe fn core_view<'a>(tile: *const nf_tile) -> Option<Tile<'a>> {
     // SAFETY: passed on to the caller.
-    let nf_tile { values, bytes, size, spp, dims, frames, bits, progressive } = *unsafe { tile.as_ref() }?;
+    let nf_tile { values, bytes, size, spp, dims, frames, bits, progressive } = *unsafe { live(tile) }?;
     if spp == 0 {
         return None;
     }

@@ -2,60 +2,101 @@
 //!
 //! By the chain rule the norm of an item's parameter gradient is at most a constant times it, and it needs no backward
 //! pass. Everything is in `f64` inside: finite inputs of any size give finite results, one beyond the range of `f32`
-//! becoming the largest finite `f32`. Functions that return a number return NaN for wrong input: nothing given, a NaN
-//! or infinity among it, slices of different lengths, or a label that does not exist.
+//! becoming the largest finite `f32`. Wrong input is an error, but for [`squared_error`], of which it is NaN.
 
 use crate::Error;
 use crate::mis::MAX_TECHNIQUES;
-use crate::real::saturate;
+use crate::real::{Real, saturate};
 
-/// `|| softmax(logits) - onehot(label) ||`, the norm of (6.10): from 0 to the square root of 2.
-///
-/// Near 0 it keeps its relative accuracy: 1 - softmax(label) is formed from the other classes.
+/// What the cross-entropy loss of one item is made of: sums of e_k = exp(logit_k - largest), which lie in 0..=1
+/// whatever the logits are.
 ///
 /// ```
-/// use noisefloor::minibatch::importance::cross_entropy;
-/// assert_eq!(cross_entropy(&[0.0, 0.0], 0), 0.5_f32.sqrt());
-/// assert!(cross_entropy(&[9.0, 0.0], 0) < 0.001); // already learnt
+/// use noisefloor::minibatch::importance::Softmax;
+/// assert_eq!(Softmax::new(&[0.0, 0.0], 0)?.norm(), 0.5_f32.sqrt());
+/// assert!(Softmax::new(&[9.0, 0.0], 0)?.norm() < 0.001); // already learnt
+/// # Ok::<(), noisefloor::Error>(())
 /// ```
-pub fn cross_entropy(logits: &[f32], label: usize) -> f32 {
-    Softmax::new(logits, label)
-        .map_or(f32::NAN, |s| saturate(libm::sqrt(s.others_squared + s.others * s.others) / s.sum))
+pub struct Softmax<'a> {
+    logits: &'a [f32],
+    label: usize,
+    /// The logit of the label.
+    own: f64,
+    largest: f64,
+    /// Of all e.
+    sum: f64,
+    /// Of all e but that of the first largest logit, whose e is 1.
+    not_largest: f64,
+    /// Of all e but the label's.
+    others: f64,
+    /// Of the squares of those.
+    others_squared: f64,
 }
 
-/// The cross-entropy loss `-ln softmax(logits)[label]`, at least 0.
-pub fn cross_entropy_loss(logits: &[f32], label: usize) -> f32 {
-    // ln sum exp(z) - z_label, where the largest exp is 1: log1p of the others keeps a loss near 0 accurate.
-    Softmax::new(logits, label).map_or(f32::NAN, |s| saturate(libm::log1p(s.not_largest) - s.label))
-}
-
-/// The derivative of the cross-entropy loss by the logits, `softmax(logits) - onehot(label)` (6.10).
-///
-/// `gradient` has one element per logit. Errors: [`Error::Range`] for no logits, a label that does not exist or a wrong
-/// length; [`Error::NotFinite`] for a logit that is NaN or infinite.
-pub fn cross_entropy_gradient(logits: &[f32], label: usize, gradient: &mut [f32]) -> Result<(), Error> {
-    if gradient.len() != logits.len() || label >= logits.len() {
-        return Err(Error::Range);
+impl<'a> Softmax<'a> {
+    /// Of the logits of an item whose class is `label`.
+    ///
+    /// Errors: [`Error::Range`] for a label that does not exist, as where there are no logits; [`Error::NotFinite`] for
+    /// a logit that is NaN or infinite.
+    pub fn new(logits: &'a [f32], label: usize) -> Result<Self, Error> {
+        let own = f64::from(*logits.get(label).ok_or(Error::Range)?);
+        let (mut at, mut largest) = (0, f32::NEG_INFINITY);
+        for (k, &z) in logits.iter().enumerate() {
+            if !z.is_finite() {
+                return Err(Error::NotFinite);
+            }
+            if z > largest {
+                (at, largest) = (k, z);
+            }
+        }
+        let largest = f64::from(largest);
+        let mut s =
+            Softmax { logits, label, own, largest, sum: 0.0, not_largest: 0.0, others: 0.0, others_squared: 0.0 };
+        for (k, &z) in logits.iter().enumerate() {
+            let e = libm::exp(f64::from(z) - largest);
+            s.sum += e;
+            if k != at {
+                s.not_largest += e;
+            }
+            if k != label {
+                s.others += e;
+                s.others_squared += e * e;
+            }
+        }
+        Ok(s)
     }
-    let s = Softmax::new(logits, label).ok_or(Error::NotFinite)?;
-    for (k, (out, &z)) in gradient.iter_mut().zip(logits).enumerate() {
-        let value = if k == label { -s.others } else { libm::exp(f64::from(z) - s.largest) };
-        *out = (value / s.sum) as f32;
+
+    /// `|| softmax(logits) - onehot(label) ||`, the norm of (6.10): from 0 to the square root of 2.
+    ///
+    /// Near 0 it keeps its relative accuracy: 1 - softmax(label) is formed from the other classes.
+    pub fn norm(&self) -> f32 {
+        saturate(Real::sqrt(self.others_squared + self.others * self.others) / self.sum)
     }
-    Ok(())
+
+    /// The cross-entropy loss `-ln softmax(logits)[label]`, at least 0.
+    pub fn loss(&self) -> f32 {
+        // ln sum exp(z) - z_label, where the largest exp is 1: log1p of the others keeps a loss near 0 accurate.
+        saturate(libm::log1p(self.not_largest) - (self.own - self.largest))
+    }
+
+    /// The derivative of the loss by each logit, `softmax(logits) - onehot(label)` (6.10).
+    pub fn gradient(&self) -> impl Iterator<Item = f32> {
+        self.logits.iter().enumerate().map(|(k, &z)| {
+            let value = if k == self.label { -self.others } else { libm::exp(f64::from(z) - self.largest) };
+            (value / self.sum) as f32
+        })
+    }
 }
 
-/// `|| 2 (output - target) ||`, for the loss `sum (output - target)^2`.
+/// `|| 2 (output - target) ||`, for the loss `sum (output - target)^2`: NaN for nothing, NaN or infinity among them, or
+/// different lengths.
 pub fn squared_error(output: &[f32], target: &[f32]) -> f32 {
-    if output.len() != target.len() {
+    let differences = output.iter().zip(target).map(|(&o, &t)| f64::from(o) - f64::from(t));
+    let square = differences.fold(0.0, |sum, difference| sum + difference * difference);
+    if output.is_empty() || output.len() != target.len() || !square.is_finite() {
         return f32::NAN;
     }
-    2.0 * norm(output.iter().zip(target).map(|(&o, &t)| f64::from(o) - f64::from(t)), 0.5 * f64::from(f32::MAX))
-}
-
-/// The norm of any derivative of the loss by the outputs.
-pub fn gradient(gradient: &[f32]) -> f32 {
-    norm(gradient.iter().map(|&g| f64::from(g)), f64::from(f32::MAX))
+    2.0 * Real::sqrt(square).min(0.5 * f64::from(f32::MAX)) as f32
 }
 
 /// How [`nodes`] makes several importances of one derivative.
@@ -96,59 +137,7 @@ pub fn nodes(gradient: &[f32], split: Split, importance: &mut [f32]) -> Result<(
         for g in gradient.iter().skip(group).step_by(groups).map(|&g| f64::from(g)) {
             squares[usize::from(split == Split::Sign && g < 0.0)] += g * g;
         }
-        out.iter_mut().zip(squares).for_each(|(out, square)| *out = saturate(libm::sqrt(square)));
+        out.iter_mut().zip(squares).for_each(|(out, square)| *out = saturate(Real::sqrt(square)));
     });
     Ok(())
-}
-
-/// The L2 norm, at most `largest`; NaN for no values or one that is not finite.
-fn norm(values: impl Iterator<Item = f64>, largest: f64) -> f32 {
-    let (count, square) = values.fold((0_usize, 0.0), |(count, square), value| (count + 1, square + value * value));
-    if count == 0 || !square.is_finite() { f32::NAN } else { libm::sqrt(square).min(largest) as f32 }
-}
-
-/// Sums of e_k = exp(logit_k - largest), which lie in 0..=1 whatever the logits are.
-struct Softmax {
-    largest: f64,
-    /// The label's logit less the largest.
-    label: f64,
-    /// Of all e.
-    sum: f64,
-    /// Of all e but that of the first largest logit, whose e is 1.
-    not_largest: f64,
-    /// Of all e but the label's.
-    others: f64,
-    /// Of the squares of those.
-    others_squared: f64,
-}
-
-impl Softmax {
-    /// None for a label that does not exist or a logit that is not finite.
-    fn new(logits: &[f32], label: usize) -> Option<Softmax> {
-        let own = f64::from(*logits.get(label)?);
-        let (mut at, mut largest) = (0, f32::NEG_INFINITY);
-        for (k, &z) in logits.iter().enumerate() {
-            if !z.is_finite() {
-                return None;
-            }
-            if z > largest {
-                (at, largest) = (k, z);
-            }
-        }
-        let largest = f64::from(largest);
-        let mut s =
-            Softmax { largest, label: own - largest, sum: 0.0, not_largest: 0.0, others: 0.0, others_squared: 0.0 };
-        for (k, &z) in logits.iter().enumerate() {
-            let e = libm::exp(f64::from(z) - largest);
-            s.sum += e;
-            if k != at {
-                s.not_largest += e;
-            }
-            if k != label {
-                s.others += e;
-                s.others_squared += e * e;
-            }
-        }
-        Some(s)
-    }
 }

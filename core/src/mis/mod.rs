@@ -20,4 +20,4 @@ pub use linear::MAX_TECHNIQUES;
 pub use memory::len;
 pub use optimal::OptimalMis;
 pub use solver::{DEFAULT_RIDGE, RIDGE_RANGE, Solver};
-pub use weight::{optimal, optimal_contribution};
+pub use weight::optimal_contribution;

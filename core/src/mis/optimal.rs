@@ -102,8 +102,8 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         Ok(())
     }
 
-    /// The alpha of (2.15), for [`optimal`](super::optimal()) and
-    /// [`optimal_contribution`](super::optimal_contribution): `alpha[p * J + j]` of integral p and technique j.
+    /// The alpha of (2.15), for [`optimal_contribution`](super::optimal_contribution): `alpha[p * J + j]` of integral p
+    /// and technique j.
     ///
     /// Used on samples other than the ones it came from, it gives unbiased estimates. [`Solver::Progressive`] stands
     /// for the alpha that the current batch uses, [`Solver::Balance`] for zeros. Errors as for [`OptimalMis::solve`].

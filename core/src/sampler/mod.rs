@@ -53,8 +53,8 @@ pub struct Sampler {
 
 /// Values are shifted by hashes of the domain.
 const SCRAMBLED: u32 = 1;
-/// Pixels are anywhere in the table.
-const HASHED: u32 = 2;
+/// Pixels are anywhere in the table, so that the error is white.
+const WHITE: u32 = 2;
 
 impl Sampler {
     /// Sample `index` of pixel (x, y) in `frame`, any values of each: pixels repeat every [`table::SIZE`].
@@ -72,7 +72,7 @@ impl Sampler {
     /// denoisers that were made for white noise.
     #[inline]
     pub const fn white(x: u32, y: u32, frame: u32, index: u32) -> Sampler {
-        Sampler { flags: HASHED, ..Sampler::pixel(x, y, frame, index) }
+        Sampler { flags: WHITE, ..Sampler::pixel(x, y, frame, index) }
     }
 
     /// The child domain of a key. Children of different keys are unrelated to each other and to their parent; keys mean
@@ -133,23 +133,6 @@ impl Sampler {
             }
         }
     }
-
-    /// As [`draw`](Sampler::draw), as many numbers as `u` has room for, at most 4; more stay as they are.
-    #[inline]
-    pub fn draw_into(&self, u: &mut [f32]) {
-        match u {
-            [a] => [*a] = self.draw(),
-            [a, b] => [*a, *b] = self.draw(),
-            [a, b, c] => [*a, *b, *c] = self.draw(),
-            [a, b, c, d, ..] => [*a, *b, *c, *d] = self.draw(),
-            [] => {}
-        }
-    }
 }
 
-impl PixelSampler for Sampler {
-    #[inline]
-    fn draw_pixel(&self, [x, y]: [u32; 2], dims: usize, stride: usize, u: &mut [f32]) {
-        self.moved(x, y, 0).draw_samples(dims, stride, u);
-    }
-}
+crate::pixels::draws!(Sampler);

@@ -5,7 +5,7 @@
 //! hash makes those that follow.
 
 use super::table::{BITS, SIZE, TABLE, fine, pascal};
-use super::{HASHED, Sampler};
+use super::{Sampler, WHITE};
 use crate::hash::{GOLDEN, mix};
 use crate::rows::chunk;
 
@@ -16,7 +16,7 @@ pub(super) fn point<const N: usize>(sampler: &Sampler) -> [u32; N] {
     let Sampler { domain, index, x, y, flags } = *sampler;
     let (mut x, mut y) = (u32::from(x), u32::from(y));
     let mut first = index.reverse_bits();
-    if flags & HASHED != 0 {
+    if flags & WHITE != 0 {
         let at = mix(x | y << 16);
         (x, y) = (at & 0xffff, at >> 16);
     }

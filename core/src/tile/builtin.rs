@@ -4,29 +4,27 @@ use super::format::{HEADER_BYTES, Header};
 use super::view::Tile;
 use crate::Error;
 
-/// Makes [`Builtin`] from the table below. A row: number, name, the feature that compiles it in, which Cargo.toml has
-/// too, and its file in `core/tiles`, without the extension.
+/// Makes [`Builtin`] from the table below. A row: name, the feature that compiles it in, which Cargo.toml has too, and
+/// its file in `core/tiles`, without the extension.
 macro_rules! tiles {
-    ($($(#[$doc:meta])* $id:literal $name:ident $feature:literal $file:literal;)*) => {
-        /// A tile that comes with the library. The numbers never change; `docs/tiles.md` says what each is good for.
+    ($($(#[$doc:meta])* $name:ident $feature:literal $file:literal;)*) => {
+        /// A tile that comes with the library. `docs/tiles.md` says what each is good for.
         ///
         /// ```
         /// use noisefloor::tile::Builtin;
         ///
-        /// assert_eq!(Builtin::from_id(2), Some(Builtin::Size128Spp4Dims2));
         /// if let Ok(tile) = Builtin::Size128Spp4Dims2.tile() { // if its feature is on
         ///     assert_eq!(tile.shape().spp, 4);
         /// }
         /// ```
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        #[repr(u32)]
         pub enum Builtin {
-            $($(#[$doc])* $name = $id,)*
+            $($(#[$doc])* $name,)*
         }
 
         impl Builtin {
             /// Every one, compiled in or not.
-            pub const ALL: [Builtin; [$($id),*].len()] = [$(Builtin::$name),*];
+            pub const ALL: [Builtin; [$($file),*].len()] = [$(Builtin::$name),*];
 
             /// The name of its file in `core/tiles`, without the extension.
             pub const fn name(self) -> &'static str {
@@ -49,37 +47,32 @@ macro_rules! tiles {
 
 tiles! {
     /// 128 x 128 pixels, 1 sample, 2 dims.
-    1 Size128Spp1Dims2 "tile-128-1spp-2d" "128_1SPP_2D";
+    Size128Spp1Dims2 "tile-128-1spp-2d" "128_1SPP_2D";
     /// 128 x 128 pixels, 4 samples, 2 dims.
-    2 Size128Spp4Dims2 "tile-128-4spp-2d" "128_4SPP_2D";
+    Size128Spp4Dims2 "tile-128-4spp-2d" "128_4SPP_2D";
     /// 128 x 128 pixels, 16 samples, 2 dims.
-    3 Size128Spp16Dims2 "tile-128-16spp-2d" "128_16SPP_2D";
+    Size128Spp16Dims2 "tile-128-16spp-2d" "128_16SPP_2D";
     /// 128 x 128 pixels, 16 samples, 2 dims, progressive.
-    4 Size128Spp16Dims2Progressive "tile-128-16spp-2d-progressive" "128_16SPP_2D_PROGRESSIVE";
+    Size128Spp16Dims2Progressive "tile-128-16spp-2d-progressive" "128_16SPP_2D_PROGRESSIVE";
     /// 128 x 128 pixels, 1 sample, 4 dims.
-    5 Size128Spp1Dims4 "tile-128-1spp-4d" "128_1SPP_4D";
+    Size128Spp1Dims4 "tile-128-1spp-4d" "128_1SPP_4D";
     /// 128 x 128 pixels, 4 samples, 4 dims.
-    6 Size128Spp4Dims4 "tile-128-4spp-4d" "128_4SPP_4D";
+    Size128Spp4Dims4 "tile-128-4spp-4d" "128_4SPP_4D";
     /// 128 x 128 pixels, 1 sample, 2 dims, for images reconstructed with a Gaussian filter.
-    7 Size128Spp1Dims2Gaussian "tile-128-1spp-2d-gaussian" "128_1SPP_2D_GAUSSIAN";
+    Size128Spp1Dims2Gaussian "tile-128-1spp-2d-gaussian" "128_1SPP_2D_GAUSSIAN";
     /// 128 x 128 pixels, 4 samples, 2 dims, for images reconstructed with a Gaussian filter.
-    8 Size128Spp4Dims2Gaussian "tile-128-4spp-2d-gaussian" "128_4SPP_2D_GAUSSIAN";
+    Size128Spp4Dims2Gaussian "tile-128-4spp-2d-gaussian" "128_4SPP_2D_GAUSSIAN";
     /// 128 x 128 pixels, 1 sample, 2 dims, 16 frames.
-    9 Size128Spp1Dims2Temporal "tile-128-1spp-2d-temporal" "128_1SPP_2D_TEMPORAL";
+    Size128Spp1Dims2Temporal "tile-128-1spp-2d-temporal" "128_1SPP_2D_TEMPORAL";
     /// 64 x 64 pixels, 1 sample, 2 dims.
-    10 Size64Spp1Dims2 "tile-64-1spp-2d" "64_1SPP_2D";
+    Size64Spp1Dims2 "tile-64-1spp-2d" "64_1SPP_2D";
     /// 64 x 64 pixels, 4 samples, 2 dims.
-    11 Size64Spp4Dims2 "tile-64-4spp-2d" "64_4SPP_2D";
+    Size64Spp4Dims2 "tile-64-4spp-2d" "64_4SPP_2D";
     /// 64 x 64 pixels, 4 samples, 2 dims, 16 frames.
-    12 Size64Spp4Dims2Temporal "tile-64-4spp-2d-temporal" "64_4SPP_2D_TEMPORAL";
+    Size64Spp4Dims2Temporal "tile-64-4spp-2d-temporal" "64_4SPP_2D_TEMPORAL";
 }
 
 impl Builtin {
-    /// The tile of a number, `None` for a number of no tile.
-    pub fn from_id(id: u32) -> Option<Builtin> {
-        Builtin::ALL.into_iter().find(|&tile| tile as u32 == id)
-    }
-
     /// The tile. Its checksum is not computed again: a test of the library has done so.
     ///
     /// # Errors

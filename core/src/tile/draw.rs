@@ -3,7 +3,6 @@
 use super::point::{Net, netted, point};
 use super::sampler::Sampler;
 use super::site::Site;
-use crate::pixels::PixelSampler;
 use crate::rng::unit;
 use crate::rows::from_mut;
 
@@ -34,18 +33,6 @@ impl Sampler<'_> {
         let site = Site::new(self);
         let Some(sample) = site.looked_up(shape, self.domain, self.index) else { return false };
         self.tile.values(site.at(shape, sample), u)
-    }
-
-    /// As [`draw`](Sampler::draw), as many coordinates as `u` has room for, at most 4; more stay as they are.
-    #[inline]
-    pub fn draw_into(&self, u: &mut [f32]) {
-        match u {
-            [a] => [*a] = self.draw(),
-            [a, b] => [*a, *b] = self.draw(),
-            [a, b, c] => [*a, *b, *c] = self.draw(),
-            [a, b, c, d, ..] => [*a, *b, *c, *d] = self.draw(),
-            [] => {}
-        }
     }
 
     /// Draws `dims` coordinates, 1 to 4, of this sample and of those that follow it: sample k's to `u[k * stride..]`,
@@ -101,9 +88,4 @@ impl Sampler<'_> {
     }
 }
 
-impl PixelSampler for Sampler<'_> {
-    #[inline]
-    fn draw_pixel(&self, [x, y]: [u32; 2], dims: usize, stride: usize, u: &mut [f32]) {
-        self.moved(x, y, 0).draw_samples(dims, stride, u);
-    }
-}
+crate::pixels::draws!(Sampler<'_>);

@@ -51,7 +51,7 @@ impl Header {
         text.iter_mut().zip(kernel.bytes()).for_each(|(to, from)| *to = from);
         let header = Header { shape, seed, kernel: text };
         let is_whole = kernel.len() <= KERNEL_BYTES && !kernel.contains('\0');
-        if shape.is_valid() && header.text_is_valid() && is_whole { Ok(header) } else { Err(Error::Range) }
+        if shape.check().is_ok() && header.text_is_valid() && is_whole { Ok(header) } else { Err(Error::Range) }
     }
 
     /// How many values, and how they are stored.
@@ -120,7 +120,11 @@ impl Header {
         let (_, kernel) = b.split_at(HEADER_BYTES - KERNEL_BYTES);
         let Some(kernel) = kernel.first_chunk::<KERNEL_BYTES>() else { return Err(Error::Corrupt) };
         let header = Header { shape, seed, kernel: *kernel };
-        if version == VERSION && shape.is_valid() && header.text_is_valid() { Ok(header) } else { Err(Error::Corrupt) }
+        if version == VERSION && shape.check().is_ok() && header.text_is_valid() {
+            Ok(header)
+        } else {
+            Err(Error::Corrupt)
+        }
     }
 
     /// With this checksum.

@@ -98,7 +98,7 @@ fn group_of<const N: usize>(payload: &[u8], rest: Rest, domain: u32, index: u32,
     let site = Site::new(&of);
     let sample = site.sample(tile.shape(), domain, index);
     let mut fixed = tile.fixed(site.at(tile.shape(), sample));
-    moved(&of, &mut fixed);
+    displaced(&of, &mut fixed);
     fixed
 }
 
@@ -145,8 +145,8 @@ impl Net {
         let d = if N > 3 { self.fourth.further(tile, sample, 3_u32.wrapping_sub(shape.dims)) } else { 0 };
         let mut fixed = chunk(&[a, b, c, d]);
         if let Some((own, further)) = fixed.split_at_mut_checked(shape.dims as usize) {
-            moved(of, own);
-            moved(&more(of, 1), further);
+            displaced(of, own);
+            displaced(&more(of, 1), further);
         }
         fixed
     }
@@ -154,7 +154,7 @@ impl Net {
 
 /// Scrambled, and continued beyond the tile's samples, if the sampler says so.
 #[inline(always)]
-fn moved(of: &Sampler<'_>, fixed: &mut [u32]) {
+fn displaced(of: &Sampler<'_>, fixed: &mut [u32]) {
     if of.scrambled != 0 {
         fixed.iter_mut().zip(1..).for_each(|(u, dim)| *u = u.wrapping_add(rotation(of.domain, dim)));
     }

@@ -68,20 +68,15 @@ impl<'a> Sampler<'a> {
         Sampler { tile, domain, index, x, y, frame, scrambled: 0 }
     }
 
-    /// The child domain of a key. Children of different keys are unrelated to each other and to their parent; keys mean
-    /// something only among children of one parent.
+    /// The child domain of a key, as the default sampler's.
     #[inline]
     #[must_use]
     pub const fn domain(self, key: u32) -> Sampler<'a> {
         Sampler { domain: child(self.domain, key), ..self }
     }
 
-    /// An independent version for each seed but 0; seed 0 changes nothing.
-    ///
-    /// It is the tile at another place, with all values of each dimension shifted, modulo 1, by a hash of seed and
-    /// domain. Over random seeds every value is uniform, so estimates are unbiased, as far as a hash of 32 bits is
-    /// random. The shift costs quality: where good images are wanted, and not exact unbiasedness, take another frame
-    /// instead. Children of a scrambled sampler are scrambled.
+    /// An independent version for each seed but 0, which changes nothing, as the default sampler's: the tile at another
+    /// place, and shifted.
     #[inline]
     #[must_use]
     pub const fn scramble(self, seed: u32) -> Sampler<'a> {

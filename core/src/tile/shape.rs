@@ -29,11 +29,6 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// Whether every field is in its range.
-    pub const fn is_valid(&self) -> bool {
-        self.check().is_ok()
-    }
-
     /// Checks every field.
     ///
     /// # Errors
@@ -53,7 +48,7 @@ impl Shape {
         }
     }
 
-    /// How many coordinates a tile of this shape has; meaningless unless [`is_valid`](Shape::is_valid).
+    /// How many coordinates a tile of this shape has; meaningless unless it passes [`check`](Shape::check).
     pub const fn coordinates(&self) -> u64 {
         // At most 2^(10 + 10 + 8 + 3 + 8) for a valid shape.
         (self.size as u64)
@@ -63,7 +58,7 @@ impl Shape {
             .wrapping_mul(self.frames as u64)
     }
 
-    /// How many bytes its payload has; meaningless unless [`is_valid`](Shape::is_valid).
+    /// How many bytes its payload has; meaningless unless it passes [`check`](Shape::check).
     pub const fn payload_bytes(&self) -> u64 {
         self.coordinates().wrapping_mul(self.bits as u64 / 8)
     }

@@ -40,7 +40,7 @@ impl<'a> Tile<'a> {
     /// [`Error::Range`] for a shape out of range, [`Error::Length`] for a payload that is not exactly as long as it
     /// says.
     pub const fn new(shape: Shape, payload: &'a [u8]) -> Result<Tile<'a>, Error> {
-        if !shape.is_valid() {
+        if shape.check().is_err() {
             return Err(Error::Range);
         }
         if payload.len() as u64 != shape.payload_bytes() {

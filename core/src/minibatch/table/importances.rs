@@ -155,20 +155,17 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
         if item < self.state.items { self.probability_in(&mixture, item) as f32 } else { 0.0 }
     }
 
-    /// Writes the probabilities of some items, one every `stride` elements: with as many tables as `stride`, and the
-    /// k-th writing from element k on, the densities of all techniques lie together for each item.
+    /// Writes the probabilities of some items; elements of `probability` beyond them stay as they are.
     ///
-    /// Errors: [`Error::Range`] for an item that does not exist, `stride` 0, or a `probability` that ends before its
-    /// last element; [`Error::NoSamples`] as for [`Table::draw`].
-    pub fn probabilities(&self, index: &[u32], stride: usize, probability: &mut [f32]) -> Result<(), Error> {
-        let Some(last) = index.len().checked_sub(1) else { return Ok(()) };
-        let fits = last.checked_mul(stride).is_some_and(|last| last < probability.len());
-        if stride == 0 || !fits {
+    /// Errors: [`Error::Range`] for an item that does not exist, or fewer elements than items; [`Error::NoSamples`] as
+    /// for [`Table::draw`].
+    pub fn probabilities(&self, index: &[u32], probability: &mut [f32]) -> Result<(), Error> {
+        if probability.len() < index.len() {
             return Err(Error::Range);
         }
         self.check_items(index)?;
         let mixture = self.mixture()?;
-        for (out, &item) in probability.iter_mut().step_by(stride).zip(index) {
+        for (out, &item) in probability.iter_mut().zip(index) {
             *out = self.probability_in(&mixture, item) as f32;
         }
         Ok(())

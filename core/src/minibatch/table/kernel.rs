@@ -4,6 +4,7 @@
 //! columns and a few more to join them. In f64 they lose nothing that a draw of 64 random bits could see.
 
 use super::tree::Node;
+pub use crate::processor::Portable;
 
 /// How many importances a block has: one cache line.
 pub const ARITY: usize = 16;
@@ -66,10 +67,6 @@ pub trait Kernel {
     /// May ask the memory for something that will be needed soon: batches wait for many answers at a time.
     fn prefetch<T>(_soon: &T) {}
 }
-
-/// Plain Rust.
-#[derive(Clone, Copy, Debug)]
-pub struct Portable;
 
 impl Kernel for Portable {}
 

@@ -23,6 +23,6 @@ mod update;
 
 pub use importances::{DEFAULT_UNIFORM_FRACTION, State, Table, check_importances, importance_len, sums_len};
 pub use kernel::{ARITY, Block, Kernel, Portable};
-pub use saved::{HEADER_BYTES, check_saved, saved_items, saved_len};
+pub use saved::{HEADER_BYTES, saved_items, saved_len};
 pub use shard::{Shard, allocate};
-pub use tree::{CHILDREN, Node};
+pub use tree::{CHILDREN, MAX_BLOCKS, Node};

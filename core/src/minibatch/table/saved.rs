@@ -44,20 +44,23 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     }
 }
 
-/// The number of items in a saved table, to make memory for it. Only the header is looked at.
+/// The number of items in a saved table, to make memory for it. Only the header and the length are looked at.
 ///
-/// Errors: [`Error::Length`] for less than a header, [`Error::Foreign`] for other bytes, [`Error::Version`].
+/// Errors: [`Error::Foreign`] for other bytes, [`Error::Version`] for a newer format, [`Error::Length`],
+/// [`Error::Corrupt`] for a version or a number of items that no table has.
 pub fn saved_items(bytes: &[u8]) -> Result<u32, Error> {
-    if bytes.len() < HEADER_BYTES {
-        return Err(Error::Length);
-    }
     let (magic, version) = (field(bytes, 0)?, u32::from_le_bytes(field(bytes, 8)?));
     let items = u32::from_le_bytes(field(bytes, 12)?);
     // Comparing arrays may call bcmp, which a freestanding target need not have.
     if u64::from_le_bytes(magic) != u64::from_le_bytes(MAGIC) {
         return Err(Error::Foreign);
     }
-    if version != VERSION { Err(Error::Version) } else { Ok(items) }
+    match (version, items) {
+        (0, _) | (VERSION, 0) => Err(Error::Corrupt),
+        (VERSION, _) if bytes.len() == saved_len(items) => Ok(items),
+        (VERSION, _) => Err(Error::Length),
+        _ => Err(Error::Version),
+    }
 }
 
 impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S> {
@@ -76,16 +79,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     }
 }
 
-/// The number of items in a saved table that [`Table::load`] would accept. Errors: as there, but for memory.
-pub fn check_saved(bytes: &[u8]) -> Result<u32, Error> {
-    Ok(check(bytes)?.items)
-}
-
 fn check(bytes: &[u8]) -> Result<State, Error> {
     let items = saved_items(bytes)?;
-    if bytes.len() != saved_len(items) {
-        return Err(Error::Length);
-    }
     let (scale, uniform_fraction) = (f64::from_le_bytes(field(bytes, 16)?), f32::from_le_bytes(field(bytes, 24)?));
     let state = State { scale, items, uniform_fraction };
     let sound = u32::from_le_bytes(field(bytes, CHECKSUM)?) == checksum(bytes)

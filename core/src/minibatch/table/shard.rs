@@ -3,7 +3,7 @@
 use super::draw::{CHUNK, check_lengths, noise};
 use super::importances::Table;
 use super::kernel::Kernel;
-use super::mixture::{Mixture, parts};
+use super::mixture::{Mixture, shares};
 use crate::error::{Error, check_part};
 use crate::real::Real;
 use crate::rng::Rng;
@@ -45,7 +45,7 @@ impl Shard {
     ///
     /// Errors: [`Error::NoSamples`] if nothing can be drawn.
     fn ways(&self, all: &Shard, uniform_fraction: f64) -> Result<(f64, f64), Error> {
-        let (tree, uniform) = parts(all.importance > 0.0, uniform_fraction)?;
+        let (tree, uniform) = shares(all.importance > 0.0, uniform_fraction)?;
         // Without importance `tree` is 0.
         let part = (self.importance / all.importance.or_one(), self.items as f64 / all.items as f64);
         Ok((tree * part.0, uniform * part.1))
@@ -113,7 +113,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
 
     /// As [`Table::draw`] for this process's part of a batch over several tables that are, together, `all` (their
     /// [`Shard::sum`], this table's [`Table::shard`] included): weights are those of the whole. Gradients times
-    /// weights, summed over the parts and divided by the whole batch's size, estimate the gradient of the mean loss
+    /// weights, summed over the shares and divided by the whole batch's size, estimate the gradient of the mean loss
     /// over all items.
     ///
     /// All tables must have the same uniform fraction. How many items each process draws, [`allocate`] says.

@@ -14,7 +14,7 @@ pub const CHILDREN: usize = 16;
 pub type Node = [i64; CHILDREN];
 
 /// The blocks of the most items there can be.
-pub(super) const MAX_BLOCKS: usize = 1 << 28;
+pub const MAX_BLOCKS: usize = 1 << 28;
 const MAX_LEVELS: usize = 7;
 
 /// Where the levels of a tree lie among its nodes.
