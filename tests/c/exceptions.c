@@ -32,6 +32,18 @@ static void check_quiet(const char *call, const char *values, int a, int b, int 
     feclearexcept(FE_ALL_EXCEPT);
 }
 
+/* Memory of numbers that raise what is watched for, float or double, where they are computed with. */
+static memory workspace_new(size_t bytes)
+{
+    const int is_float = below(2);
+    memory work = memory_new(bytes);
+    uint32_t *words = (uint32_t *)work.start;
+    size_t i;
+    for (i = 0; i < bytes / 4; ++i)
+        words[i] = is_float ? 0x7FA00001u : i % 2 ? 0x7FF40000u : 1u;
+    return work;
+}
+
 #define KINDS 9
 static const char *const kind_names[KINDS] = {"zero",      "a constant", "a product",    "a step",       "rare values",
                                               "large ones", "tiny ones",  "all magnitudes", "both signs"};
@@ -96,7 +108,7 @@ static void control_variates(void)
         fill_values(kind, u, config.dims, f, n, config.channels);
         for (i = 0; i < n; ++i)
             controls[i] = size * u[i * config.dims];
-        work = memory_new(nf_cv_workspace_size(&config, n));
+        work = workspace_new(nf_cv_workspace_size(&config, n));
         feclearexcept(FE_ALL_EXCEPT);
         estimate_controlled(&config, u, f, controls, &integral, n, work.start, work.bytes, &out);
         check_quiet("nf_cv_estimate", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
@@ -107,7 +119,7 @@ static void control_variates(void)
         memory_free(&work);
         state = memory_new(nf_cv_accumulator_size(&config, NULL));
         others = memory_new(nf_cv_accumulator_size(&config, NULL));
-        work = memory_new(accumulator_workspace_size(&config));
+        work = workspace_new(accumulator_workspace_size(&config));
         feclearexcept(FE_ALL_EXCEPT);
         if (state.bytes > 0 && nf_cv_accumulator_init(state.start, state.bytes, &config, &accumulator) == NF_OK &&
             nf_cv_accumulator_init(others.start, others.bytes, &config, &other) == NF_OK) {
@@ -165,7 +177,7 @@ static void images(void)
         }
         /* Then the same pixels without places, surfaces and factors. */
         for (i = 0; i < 2; ++i) {
-            work = memory_new(nf_cv_image_workspace_size(&config, &image, &samples));
+            work = workspace_new(nf_cv_image_workspace_size(&config, &image, &samples));
             feclearexcept(FE_ALL_EXCEPT);
             nf_cv_image_estimate(&config, &image, &samples, work.start, work.bytes, out);
             check_quiet("nf_cv_image_estimate", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
@@ -186,7 +198,7 @@ static void tables(void)
     for (turn = 0; turn < TURNS(900); ++turn) {
         const int kind = turn % KINDS;
         const uint32_t items = 1 + below(500), batch = 1 + below(items < 100 ? items : 100);
-        memory work = memory_new(nf_table_size(items));
+        memory work = workspace_new(nf_table_size(items));
         nf_table table;
         uint32_t i;
         fill_points(importance, items);
@@ -238,8 +250,8 @@ static void weights(void)
         float pdf[12], value[12], alpha[3] = {0.0f, 0.0f, 0.0f}, weight[4], gradient[12], out[3];
         nf_omis *omis = NULL;
         nf_gradient *state = NULL;
-        memory work = memory_new(nf_omis_size(3, 1));
-        memory gradients = memory_new(nf_gradient_size(3, 3));
+        memory work = workspace_new(nf_omis_size(3, 1));
+        memory gradients = workspace_new(nf_gradient_size(3, 3));
         uint32_t i;
         fill_points(value, 12);
         fill_values(kind, value, 1, gradient, 12, 1);

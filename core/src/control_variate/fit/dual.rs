@@ -67,7 +67,7 @@ impl<'a, R: Real> Dual<'a, R> {
         let strength = penalty.strength * count;
         let mut matrix = arena.triangle(n);
         let inverse = arena.triangle(n);
-        let (diagonal, shift) = (arena.take(n), arena.take(n));
+        let (diagonal, shift) = (arena.zeros(n), arena.take(n));
         let mut alpha = Panel::new(arena.take(n * design.channels), n);
         copy(matrix.entries_mut(), self.kernel.entries());
         // K annihilates 1, so B^-1 holds 11'/(s n) beside which all else is small for a small strength s. With
