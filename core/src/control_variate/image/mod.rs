@@ -34,6 +34,7 @@ mod edges;
 mod fit;
 mod groups;
 mod known;
+mod load;
 mod passes;
 mod pixels;
 mod products;
