@@ -68,6 +68,19 @@ pub extern "C" fn nf_status_message(status: nf_status) -> *const c_char {
     words.as_ptr()
 }
 
+const _: () = assert!(
+    Error::Range.status() == NF_ERR_RANGE
+        && Error::NotFinite.status() == NF_ERR_NOT_FINITE
+        && Error::Memory.status() == NF_ERR_MEMORY
+        && Error::NoSamples.status() == NF_ERR_NO_SAMPLES
+        && Error::Unsupported.status() == NF_ERR_UNSUPPORTED
+        && Error::Mismatch.status() == NF_ERR_MISMATCH
+        && Error::Foreign.status() == NF_ERR_FOREIGN
+        && Error::Version.status() == NF_ERR_VERSION
+        && Error::Length.status() == NF_ERR_LENGTH
+        && Error::Corrupt.status() == NF_ERR_CORRUPT
+);
+
 /// The status that stands for a core error.
 pub(crate) fn status_of(error: Error) -> nf_status {
     error.status()

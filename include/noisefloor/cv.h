@@ -117,8 +117,9 @@ typedef struct nf_estimate {
     float gain; // Estimated variance relative to the plain mean's, averaged over the channels; 1 is no gain.
 } nf_estimate;
 
-// Bytes of workspace for n samples of each integral, or fewer; 0 for a configuration that nf_check() refuses, for
-// options that exclude each other, or where no memory could be large enough. It never shrinks as n grows.
+// Bytes of workspace for n samples of each integral, or fewer: never less for more samples. 0 for a configuration that
+// nf_check() refuses, for options that exclude each other, for more samples than the solver takes, or where no memory
+// could be large enough.
 size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
 // Estimates `integrals` integrals from `samples->n` samples of each, apart from each other: out[integrals]. Nothing of

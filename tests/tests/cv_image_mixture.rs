@@ -11,6 +11,9 @@ use noisefloor_tests::shared::{block, image};
 /// Within this of the largest value, of the gain, and of the standard error.
 const TOLERANCE: f64 = 1e-4;
 
+/// The functions' degrees are below this, which stands for slices' copies of functions.
+const LAST: usize = 4;
+
 /// How candidates are judged, and pixels of overlapping windows averaged.
 #[derive(Clone, Copy, Debug)]
 struct Rule {
@@ -166,6 +169,20 @@ impl Case {
         self
     }
 
+    /// A further coordinate picks one of so many slices, each with a level and a slope of its own.
+    fn with_slices(mut self, slices: usize, rng: &mut SplitMix64) -> Self {
+        self.config = Config { dims: 3, slices, ..self.config };
+        let mut u = vec![];
+        for (f, own) in self.f.chunks_mut(2).zip(self.u.chunks(2)) {
+            let slice = rng.below(slices) as f32;
+            u.extend([own[0], own[1], (slice + 0.5) / slices as f32]);
+            f[0] += 0.3 * slice + 0.1 * slice * own[0];
+            f[1] += (1.7 * slice).sin();
+        }
+        self.u = u;
+        self
+    }
+
     fn with_factors(mut self, rng: &mut SplitMix64) -> Self {
         self.factors = (0..2 * self.pixels()).map(|_| [0.0, 0.5, 1.0, 2.0][rng.below(4)]).collect();
         self
@@ -269,7 +286,13 @@ impl Case {
     ) -> Fits {
         let far: Vec<bool> = group.iter().map(|member| self.is_far(member.pixel, limits)).collect();
         let (n, axes) = (self.n, group[0].at.len());
-        let basis = design(&self.config, &wide(&self.u));
+        let mut basis = design(&self.config, &wide(&self.u));
+        // By degrees.
+        for row in basis.rows.iter_mut().chain([&mut basis.weights]) {
+            let mut sorted: Vec<(usize, f64)> = degrees.iter().copied().zip(row.iter().copied()).collect();
+            sorted.sort_by_key(|&(degree, _)| degree);
+            *row = sorted.into_iter().map(|(_, value)| value).collect();
+        }
         let scaled = |at: &[f64]| at.iter().map(|at| 3.0_f64.sqrt() * at).collect::<Vec<f64>>();
         let (mut rows, mut values, mut estimates, mut within) = (vec![], vec![], vec![vec![]], vec![[0.0; 4]]);
         for member in group {
@@ -290,7 +313,7 @@ impl Case {
         let weights = [&vec![1e-3; axes][..], &basis.weights, &products.collect::<Vec<f64>>()].concat();
 
         let mut ends: Vec<usize> =
-            (1..=3).map(|most| axes + degrees.iter().filter(|&&degree| degree <= most).count()).collect();
+            (1..=LAST).map(|most| axes + degrees.iter().filter(|&&degree| degree <= most).count()).collect();
         ends.push(weights.len());
         ends.dedup();
         for end in ends {
@@ -372,7 +395,10 @@ impl Case {
     /// By the definition, with what windows say of a pixel averaged.
     fn expected(&self, rule: &Rule) -> Vec<Expected> {
         let terms = legendre::terms(2, 3);
-        let degrees: Vec<usize> = terms[1..].iter().map(|term| legendre::degree(term)).collect();
+        let mut degrees: Vec<usize> = terms[1..].iter().map(|term| legendre::degree(term)).collect();
+        // Slices have indicators, and copies of functions for which there is one candidate.
+        degrees.extend(vec![1; self.config.slices]);
+        degrees.resize(design(&self.config, &wide(&self.u[..self.config.dims])).weights.len(), LAST);
         let empty = Expected { means: vec![0.0; 2], std_errors: vec![0.0; 2], gain: 0.0 };
         let (mut sums, mut total) = (vec![empty; self.pixels()], vec![0.0; self.pixels()]);
         for window in self.windows() {
@@ -576,6 +602,20 @@ fn images_with_surfaces_and_factors() {
             case(&mut rng).with_surfaces(9, &mut rng).check("nine surfaces");
             case(&mut rng).with_surfaces(2, &mut rng).with_factors(&mut rng).check("two surfaces, factors");
         }
+    }
+}
+
+/// So many slices that they are factored apart, surfaces and bright pixels among them.
+#[test]
+fn many_slices() {
+    let mut rng = SplitMix64::new(6);
+    for estimator in CHOOSING {
+        let case = |size, is_block, rng: &mut SplitMix64| {
+            Case::new(estimator, size, is_block, 1, rng).with_slices(12, rng)
+        };
+        case([8, 7], false, &mut rng).with_bright(&[40, 46]).check("slices, bright pixels");
+        case([8, 7], false, &mut rng).with_surfaces(2, &mut rng).with_factors(&mut rng).check("slices, surfaces, factors");
+        case([36, 1], true, &mut rng).check("a block of slices");
     }
 }
 

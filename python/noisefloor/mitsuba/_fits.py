@@ -124,14 +124,16 @@ def kind():
             corner = mi.Point2f(pixel % width, pixel // width) + offset
             ray, weight = _rays(sensor, corner + sampler.next_2d(), sampler)
             radiance, valid, _ = self.inner.sample(scene, sampler, ray, sensor.get_medium())
-            value = numpy.array(weight * radiance).T.reshape(height, width, spp, -1)
+            # An integrator may say one thing of all samples.
+            count = width * height * spp
+            value = numpy.array(weight * radiance)
+            value = numpy.array(numpy.broadcast_to(value, (*value.shape[:-1], count))).T.reshape(height, width, spp, -1)
             # Others would take the whole picture with them.
             wrong = ~numpy.isfinite(value).all(-1)
             if wrong.any():
                 mi.Log(mi.LogLevel.Warn, f"noisefloor_fits: {wrong.sum()} samples were not finite, and count as 0")
                 value[wrong] = 0
-            # An integrator may say one thing of all samples.
-            valid = numpy.broadcast_to(numpy.array(valid), width * height * spp)
+            valid = numpy.broadcast_to(numpy.array(valid), count)
             return value, valid.reshape(height, width, spp).mean(-1, dtype=numpy.float32)
 
         def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):

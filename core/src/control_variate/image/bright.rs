@@ -82,7 +82,7 @@ pub(super) fn limits(batch: &Batch<'_>, channel: usize, judges: Colours, trust: 
                 lanes::zip(&value, inside, |value, inside| if inside > 0.0 { value } else { f32::NEG_INFINITY })
             };
             let (high, low) = (seen(*high), seen(low.map(|low| -low)));
-            if judges.has(block) || judges == Colours::ALL {
+            if judges.has(block) {
                 highest.add(high, kept);
                 lowest.add(low, kept);
             } else {

@@ -170,7 +170,8 @@ impl<'a> Edges<'a> {
             training_lit: Sums::new(1, columns_of_a, channels, arena),
             most: [[NONE; Config::MAX_CHANNELS]; COLOURS],
             shares: arena.take_lanes(POINTS * POINTS),
-            points: arena.take_lanes(POINTS * POINTS),
+            // Looked up also where nothing was put there.
+            points: arena.zeros(POINTS * POINTS * LANES).as_chunks_mut().0,
         }
     }
 

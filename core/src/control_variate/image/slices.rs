@@ -362,7 +362,7 @@ impl<'a> Apart<'a> {
                 for (z, b) in solved.iter().zip(begin..) {
                     leverage = lanes::plus_product(leverage, product(z, &diagonal(self.border, b)), *z);
                 }
-                for (sum, side) in sums.iter_mut().zip(rows(self.sides, width)) {
+                for (sum, side) in sums.iter_mut().take(values + fixed).zip(rows(self.sides, width)) {
                     for (z, entry) in solved.iter().zip(from(side, begin)) {
                         *sum = lanes::plus_product(*sum, *entry, *z);
                         lanes::keep_together();

@@ -14,10 +14,10 @@ use crate::processor::{Processor, Step};
 
 /// Corrects every pixel of the colours `taken`, of which fits have seen no sample, by those to the others of them.
 pub(super) fn correct<P: Processor>(fits: &mut Fits<'_>, batch: &Batch<'_>, taken: Colours) {
-    let is_apart = fits.apart.is_some();
     if batch.terms.ends.is_empty() {
         return;
     }
+    let is_apart = fits.apart.is_some();
     if batch.call.n == 1 {
         if is_apart {
             return fit_slices::<P>(fits, batch, taken);

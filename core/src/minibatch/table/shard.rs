@@ -113,7 +113,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
 
     /// As [`Table::draw`] for this process's part of a batch over several tables that are, together, `all` (their
     /// [`Shard::sum`], this table's [`Table::shard`] included): weights are those of the whole. Gradients times
-    /// weights, summed over the shares and divided by the whole batch's size, estimate the gradient of the mean loss
+    /// weights, summed over the parts and divided by the whole batch's size, estimate the gradient of the mean loss
     /// over all items.
     ///
     /// All tables must have the same uniform fraction. How many items each process draws, [`allocate`] says.
