@@ -610,11 +610,11 @@ fn images_with_surfaces_and_factors() {
 fn many_slices() {
     let mut rng = SplitMix64::new(6);
     for estimator in CHOOSING {
-        let case = |size, is_block, rng: &mut SplitMix64| {
-            Case::new(estimator, size, is_block, 1, rng).with_slices(12, rng)
-        };
-        case([8, 7], false, &mut rng).with_bright(&[40, 46]).check("slices, bright pixels");
-        case([8, 7], false, &mut rng).with_surfaces(2, &mut rng).with_factors(&mut rng).check("slices, surfaces, factors");
+        let case =
+            |size, is_block, rng: &mut SplitMix64| Case::new(estimator, size, is_block, 1, rng).with_slices(12, rng);
+        let image = case([8, 7], false, &mut rng).with_bright(&[40, 46]);
+        image.check("slices, bright pixels");
+        image.with_surfaces(2, &mut rng).with_factors(&mut rng).check("slices, bright pixels, surfaces, factors");
         case([36, 1], true, &mut rng).check("a block of slices");
     }
 }
