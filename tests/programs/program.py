@@ -3,6 +3,7 @@
 import array
 import math
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -25,7 +26,9 @@ class Program:
         self.path = pathlib.Path(path)
         self.name = self.path.name
         self.folder = self.path.parent / f"{self.name}.files"
-        self.folder.mkdir(exist_ok=True)
+        # What an earlier run wrote must not pass for what this one does.
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.folder.mkdir()
 
     def start(self, *arguments):
         command = [str(self.path), *map(str, arguments)]
