@@ -3,9 +3,9 @@
 import array
 import math
 import pathlib
-import shutil
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -25,10 +25,9 @@ class Program:
     def __init__(self, path):
         self.path = pathlib.Path(path)
         self.name = self.path.name
-        self.folder = self.path.parent / f"{self.name}.files"
-        # What an earlier run wrote must not pass for what this one does.
-        shutil.rmtree(self.folder, ignore_errors=True)
-        self.folder.mkdir()
+        # New: what an earlier run wrote must not pass for what this one does, and others run beside it.
+        self.scratch = tempfile.TemporaryDirectory(dir=self.path.parent)
+        self.folder = pathlib.Path(self.scratch.name)
 
     def start(self, *arguments):
         command = [str(self.path), *map(str, arguments)]
