@@ -9,10 +9,10 @@ fn main() {
     let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder));
     let folder = target.join("noisefloor");
     let archive = folder.join("libnoisefloor.a");
-    let sources = [root.join("core/src"), root.join("capi/src")];
+    let sources = ["core/src", "core/tiles", "capi/src"].map(|folder| root.join(folder));
     println!("cargo:rustc-check-cfg=cfg(archive)");
     println!("cargo:rerun-if-env-changed=CARGO_TARGET_DIR");
-    for path in [&archive, &sources[0], &sources[1]] {
+    for path in sources.iter().chain([&archive]) {
         println!("cargo:rerun-if-changed={}", path.display());
     }
     let state = match modified(&archive) {
@@ -32,9 +32,10 @@ fn modified(path: &Path) -> Option<SystemTime> {
     fs::metadata(path).and_then(|data| data.modified()).ok()
 }
 
-/// The time of the newest file below a folder.
+/// The time of the newest file below a folder, but for what says how a tile was made.
 fn newest(folder: &Path) -> Option<SystemTime> {
     let entries = fs::read_dir(folder).ok()?;
+    let is_compiled = |path: &PathBuf| !path.extension().is_some_and(|kind| kind == "toml" || kind == "md");
     let time = |path: PathBuf| if path.is_dir() { newest(&path) } else { modified(&path) };
-    entries.filter_map(|entry| time(entry.ok()?.path())).max()
+    entries.filter_map(|entry| time(Some(entry.ok()?.path()).filter(is_compiled)?)).max()
 }

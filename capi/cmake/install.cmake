@@ -17,7 +17,13 @@ endforeach()
 file(REAL_PATH include/noisefloor parts)
 install(DIRECTORY "${parts}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 # The tiles as files: for programs that read them (nf_tile_from_bytes), in place of the library's own.
-install(DIRECTORY ../core/tiles/ DESTINATION "${CMAKE_INSTALL_DATADIR}/noisefloor/tiles" FILES_MATCHING PATTERN "*.nft")
+# Outside the workspace there are none.
+set(tilesdir "")
+if(EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/../core/tiles")
+    set(tiles "${CMAKE_INSTALL_DATADIR}/noisefloor/tiles")
+    install(DIRECTORY ../core/tiles/ DESTINATION "${tiles}" FILES_MATCHING PATTERN "*.nft")
+    set(tilesdir "tilesdir=\${prefix}/${tiles}")
+endif()
 
 # One file of targets for each kind, so that a distribution can leave one out of a package.
 if(NOISEFLOOR_STATIC)

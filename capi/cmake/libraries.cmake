@@ -1,7 +1,8 @@
 # The one object, and the targets noisefloor::noisefloor and noisefloor::noisefloor_static made of it.
 
 # cargo knows better than CMake what to compile again, but not what to link again.
-file(GLOB_RECURSE sources CONFIGURE_DEPENDS src/*.rs ../core/src/*.rs ../core/tiles/*.nft)
+file(GLOB_RECURSE sources CONFIGURE_DEPENDS src/*.rs ../core/src/*.rs ../core/tiles/*.nft
+    ../core/tiles/*.bin)
 # What else decides what cargo makes; outside the workspace some of it is not there.
 set(settings)
 foreach(file Cargo.toml ../Cargo.toml ../Cargo.lock ../core/Cargo.toml)

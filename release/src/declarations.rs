@@ -10,7 +10,7 @@ const ASSERTS: &str = "/* Layouts:";
 
 #[derive(Default)]
 pub(crate) struct Header {
-    /// Result, name and types of parameters; their names bind nobody.
+    /// Result, name and parameters, whose names tell two of one type apart.
     functions: Vec<String>,
     /// Type and name of what is data.
     objects: Vec<String>,
@@ -86,8 +86,7 @@ impl Header {
         if !name.starts_with("nf_") {
             bail!("the header declares `{name}`, which does not begin with nf_");
         }
-        let parameters: Vec<_> =
-            parameters.trim_end_matches(')').split(',').map(|one| without_name(one.trim())).collect();
+        let parameters: Vec<_> = parameters.trim_end_matches(')').split(',').map(str::trim).collect();
         self.functions.push(format!("{before}({})", parameters.join(", ")));
         Ok(())
     }
@@ -154,14 +153,6 @@ fn field(text: &str) -> Result<(String, String)> {
     Ok((format!("{}{array}", kind.trim()), name.to_owned()))
 }
 
-/// The type of a parameter.
-fn without_name(parameter: &str) -> &str {
-    match parameter.rfind([' ', '*']) {
-        Some(place) => parameter[..=place].trim(),
-        None => parameter,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -178,8 +169,8 @@ mod tests {
         let header = Header::parse(TEXT).unwrap();
         assert_eq!(header.version().unwrap(), "3");
         let lines = [
-            "function const char *nf_m(nf_status)",
-            "function nf_s nf_f(const float *, size_t)",
+            "function const char *nf_m(nf_status status)",
+            "function nf_s nf_f(const float *u, size_t n)",
             "function uint32_t nf_v(void)",
             "constant NF_E -2",
             "opaque nf_o",

@@ -1,30 +1,23 @@
 //! The generated C headers: cbindgen reads `capi/`, this file arranges what it finds by service.
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::fs;
 use std::path::Path;
 use xtask::paths;
 
 /// A chapter of a header and how its items' names begin, in the order in which they are printed.
 struct Chapter {
-    /// The header, in include/noisefloor/.
+    /// The header, under include/.
     file: &'static str,
     title: &'static str,
     /// Where the mathematics stands, in docs/, and when to use what.
     guides: &'static str,
-    /// `|` separates those that share a place.
-    prefixes: &'static [&'static str],
-}
-
-impl Chapter {
-    /// The header's name under include/.
-    fn path(&self) -> String {
-        format!("noisefloor/{}", self.file)
-    }
+    /// Between spaces; `|` separates those that share a place.
+    prefixes: &'static str,
 }
 
 /// The header that the others include.
-const BASE: &str = "base.h";
+const BASE: &str = "noisefloor/base.h";
 /// The width of the headers' lines.
 const WIDTH: usize = 120;
 
@@ -34,113 +27,61 @@ const CHAPTERS: [Chapter; 8] = [
         file: BASE,
         title: "Version and status",
         guides: "",
-        prefixes: &[
-            "NF_ABI_VERSION",
-            "nf_abi_version",
-            "nf_status",
-            "NF_OK|NF_ERR_",
-            "nf_status_message",
-            "NF_CHECK_",
-            "nf_check",
-        ],
+        prefixes: "NF_ABI_VERSION nf_abi_version nf_status NF_OK|NF_ERR_ nf_status_message NF_CHECK_ nf_check",
     },
-    Chapter { file: BASE, title: "Random numbers", guides: "", prefixes: &["nf_rng", "nf_rng_"] },
+    Chapter { file: BASE, title: "Random numbers", guides: "", prefixes: "nf_rng nf_rng_" },
     Chapter {
-        file: "cv.h",
+        file: "noisefloor/cv.h",
         title: "Control variates: samples of one integral, or of a pixel, made into an estimate of lower error",
         guides: "control_variates.md",
-        prefixes: &[
-            "NF_CV_",
-            "NF_BASIS_",
-            "NF_SOLVER_",
-            "NF_RIDGE_",
-            "NF_COLOR_",
-            "NF_NONFINITE_",
-            "NF_PRECISION_",
-            "nf_cv_config",
-            "nf_cv_samples",
-            "nf_cv_terms",
-            "nf_estimate",
-            "nf_cv_workspace_size",
-            "nf_cv_estimate",
-            "nf_cv_rectangle",
-            "nf_cv_image",
-            "nf_cv_image_",
-            "NF_OPTIMIZER_",
-            "nf_cv_descent",
-            "nf_cv_gradient_descent",
-            "nf_cv_accumulator",
-            "nf_cv_accumulator_",
-        ],
+        prefixes: "NF_CV_ NF_BASIS_ NF_SOLVER_ NF_RIDGE_ NF_COLOR_ NF_NONFINITE_ NF_PRECISION_ nf_cv_config \
+                   nf_cv_samples nf_cv_terms nf_estimate nf_cv_workspace_size nf_cv_estimate nf_cv_rectangle \
+                   nf_cv_image nf_cv_image_ NF_OPTIMIZER_ nf_cv_descent nf_cv_gradient_descent nf_cv_accumulator \
+                   nf_cv_accumulator_",
     },
     Chapter {
-        file: "cv.h",
+        file: "noisefloor/cv.h",
         title: "Guidance: which estimator and which tile to use",
         guides: "choosing.md",
-        prefixes: &["NF_SAMPLING_", "NF_METHOD_", "nf_recommendation", "nf_recommend"],
+        prefixes: "NF_SAMPLING_ NF_METHOD_ nf_recommendation nf_recommend",
     },
     Chapter {
-        file: "mis.h",
+        file: "noisefloor/mis.h",
         title: "Multiple importance sampling: the weight of one technique at one point",
         guides: "mis.md",
-        prefixes: &["NF_MIS_MAX_TECHNIQUES", "NF_MIS_", "nf_mis_"],
+        prefixes: "NF_MIS_MAX_TECHNIQUES NF_MIS_ nf_mis_",
     },
     Chapter {
-        file: "mis.h",
+        file: "noisefloor/mis.h",
         title: "Optimal multiple importance sampling: weights of least variance, found from the samples",
         guides: "mis.md",
-        prefixes: &["NF_OMIS_", "nf_omis", "nf_omis_", "nf_omis_arguments"],
+        prefixes: "NF_OMIS_ nf_omis nf_omis_ nf_omis_arguments",
     },
     Chapter {
-        file: "tile.h",
+        file: "noisefloor/tile.h",
         title: "Samplers and tiles: sample points whose error is spread over the image where it shows least",
         guides: "sampling.md, tiles.md, renderer.md",
-        prefixes: &[
-            "nf_sampler",
-            "nf_sampler_pixel",
-            "nf_sampler_white",
-            "nf_sampler_domain",
-            "nf_sampler_scramble",
-            "nf_sampler_draw",
-            "nf_sampler_table",
-            "nf_sampler_fill",
-            "nf_tile",
-            "nf_tile_",
-            "nf_tile_sampler",
-            "nf_tile_sampler_pixel",
-            "nf_tile_sampler_domain",
-            "nf_tile_sampler_scramble",
-            "nf_tile_sampler_draw",
-            "nf_tile_sampler_fill",
-        ],
+        prefixes: "nf_sampler nf_sampler_pixel nf_sampler_white nf_sampler_domain nf_sampler_scramble \
+                   nf_sampler_draw nf_sampler_table nf_sampler_fill nf_tile nf_tile_ nf_tile_sampler \
+                   nf_tile_sampler_pixel nf_tile_sampler_domain nf_tile_sampler_scramble nf_tile_sampler_draw \
+                   nf_tile_sampler_fill",
     },
     Chapter {
-        file: "table.h",
+        file: "noisefloor/table.h",
         title: "Minibatches: items drawn in proportion to their importance, and gradients of the mean loss from them",
         guides: "minibatch.md, minibatch_gradients.md",
-        prefixes: &[
-            "NF_TABLE_",
-            "nf_table",
-            "nf_table_",
-            "nf_shard",
-            "nf_table_shard",
-            "nf_shards_",
-            "nf_table_draw_shard",
-            "nf_shuffle",
-            "NF_NODES_",
-            "nf_importance_",
-            "nf_importance_arguments",
-            "nf_omis_weights",
-            "nf_gradient",
-            "nf_gradient_",
-        ],
+        prefixes: "NF_TABLE_ nf_table nf_table_ nf_shard nf_table_shard nf_shards_ nf_table_draw_shard nf_shuffle \
+                   NF_NODES_ nf_importance_ nf_importance_arguments nf_omis_weights nf_gradient nf_gradient_",
     },
 ];
 
 /// Rewrites `include/noisefloor.h` and its parts from the `capi` crate.
 pub(crate) fn write() -> Result<()> {
-    fs::create_dir_all(paths::root().join("include").join("noisefloor")).context("cannot create include/noisefloor")?;
-    for (file, text) in generate()? {
+    let (files, folder) = (generate()?, paths::root().join("include/noisefloor"));
+    // So that no former part stays.
+    _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).context("cannot create include/noisefloor")?;
+    for (file, text) in files {
         let path = paths::root().join("include").join(file);
         fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
     }
@@ -155,12 +96,14 @@ pub(crate) fn check() -> Result<()> {
             bail!("{} is not what capi/ generates: run `cargo xtask header` and commit the result", path.display());
         }
     }
+    let found = paths::list("include/noisefloor")?.len();
+    ensure!(found == parts().len(), "include/noisefloor has files that capi/ does not generate: `cargo xtask header`");
     Ok(())
 }
 
 /// The parts' names under include/, each once, in their order.
 pub(crate) fn parts() -> Vec<String> {
-    let mut parts: Vec<_> = CHAPTERS.iter().map(Chapter::path).collect();
+    let mut parts: Vec<_> = CHAPTERS.iter().map(|chapter| chapter.file.to_owned()).collect();
     parts.dedup();
     parts
 }
@@ -190,12 +133,11 @@ fn generate() -> Result<Vec<(String, String)>> {
 /// The text of a part.
 fn part(name: &str, includes: &str, items: &[Item]) -> String {
     let guard = name.to_uppercase().replace(['/', '.'], "_");
-    let base = format!("#include \"{BASE}\"\n");
-    let includes = if name == CHAPTERS[0].path() { includes } else { &base };
+    let includes = if name == BASE { includes } else { "#include \"base.h\"\n" };
     let mut text =
         "/* Generated from capi/ by `cargo xtask header`; do not edit. Conventions: noisefloor.h. */\n".to_owned();
     text += &format!("\n#ifndef {guard}\n#define {guard}\n\n{includes}\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n");
-    for (index, chapter) in CHAPTERS.iter().enumerate().filter(|(_, chapter)| chapter.path() == name) {
+    for (index, chapter) in CHAPTERS.iter().enumerate().filter(|(_, chapter)| chapter.file == name) {
         text += &format!("\n/* {}.", chapter.title);
         if !chapter.guides.is_empty() {
             text += &format!("\n * Guides, in docs/: {}.", chapter.guides);
@@ -227,7 +169,7 @@ impl Item {
         let name = name(&code).with_context(|| format!("cbindgen wrote a declaration without a name: {block}"))?;
         let mut best: Option<(usize, usize, usize)> = None;
         for (index, chapter) in CHAPTERS.iter().enumerate() {
-            let prefixes = chapter.prefixes.iter().enumerate();
+            let prefixes = chapter.prefixes.split(' ').enumerate();
             let prefixes = prefixes.flat_map(|(place, all)| all.split('|').map(move |prefix| (place, prefix)));
             for (place, prefix) in prefixes.filter(|(_, prefix)| name.starts_with(prefix)) {
                 if best.is_none_or(|(length, ..)| prefix.len() > length) {

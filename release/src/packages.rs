@@ -12,7 +12,7 @@ pub(crate) const PUBLISHED: [&str; 3] = ["noisefloor", "noisefloor-capi", "noise
 /// The registry's limit for a package, compressed.
 const LIMIT: u64 = 10 << 20;
 /// What cargo adds to our files, and what must be there whatever the folder holds.
-const ADDED: [&str; 2] = ["Cargo.toml.orig", "Cargo.lock"];
+const ADDED: [&str; 3] = ["Cargo.toml.orig", "Cargo.lock", ".cargo_vcs_info.json"];
 const NEEDED: [&str; 3] = ["LICENSE-MIT", "LICENSE-APACHE", "Cargo.toml"];
 
 /// Packs each published package without compiling it again; the tests have compiled the same files.
@@ -48,7 +48,8 @@ fn check_one(name: &str, package: &serde_json::Value) -> Result<()> {
     if !missing.is_empty() {
         bail!("the package {name} would lack {missing:?}");
     }
-    let strange: Vec<_> = packed.difference(&wanted).filter(|path| !is_added(path)).collect();
+    let strange: Vec<_> =
+        packed.difference(&wanted).filter(|path| !ADDED.iter().any(|name| *path == Path::new(name))).collect();
     if !strange.is_empty() {
         bail!("the package {name} would hold {strange:?}, which its folder has not");
     }
@@ -59,10 +60,6 @@ fn check_one(name: &str, package: &serde_json::Value) -> Result<()> {
         bail!("{} has {size} bytes, more than the {LIMIT} that the registry takes", archive.display());
     }
     Ok(())
-}
-
-fn is_added(path: &Path) -> bool {
-    ADDED.iter().any(|name| path == Path::new(name)) || path == Path::new(".cargo_vcs_info.json")
 }
 
 /// All files under a folder, as paths from it.
@@ -83,7 +80,7 @@ fn files(folder: &Path, below: &Path, found: &mut BTreeSet<PathBuf>) -> Result<(
 const NAME_RUST: [&str; 2] = ["README.md", "docs/install.md"];
 
 /// The declared Rust version is what the texts say and compiles the libraries; CHANGELOG.md knows the project's
-/// version.
+/// version, and whoever asks CMake for one asks for it.
 pub(crate) fn versions() -> Result<()> {
     let packages = run::packages()?;
     let core = packages.iter().find(|package| package["name"] == "noisefloor").context("there is no `noisefloor`")?;
@@ -103,6 +100,12 @@ pub(crate) fn versions() -> Result<()> {
     let version = core["version"].as_str().context("`noisefloor` has no version")?;
     if !paths::read("CHANGELOG.md")?.lines().any(|line| line.split(' ').take(2).eq(["##", version])) {
         bail!("CHANGELOG.md has no section `## {version}`, which is the version in Cargo.toml");
+    }
+    let short = version.rsplit_once('.').map_or(version, |(short, _)| short);
+    let asked = run::read(run::command("git").args(["grep", "-oE", r"find_package\(noisefloor [0-9]+\.[0-9.]+"]));
+    let asked = asked.map_err(|_| Missing("git does not say who asks CMake for which version".to_owned()))?;
+    if let Some(other) = asked.lines().find(|asked| !asked.ends_with(&format!(" {short}"))) {
+        bail!("{other}: it must be {short}, as the version in Cargo.toml is {version}");
     }
     compiles(rust)
 }

@@ -5,6 +5,7 @@ import math
 import pathlib
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -24,8 +25,9 @@ class Program:
     def __init__(self, path):
         self.path = pathlib.Path(path)
         self.name = self.path.name
-        self.folder = self.path.parent / f"{self.name}.files"
-        self.folder.mkdir(exist_ok=True)
+        # New: what an earlier run wrote must not pass for what this one does, and others run beside it.
+        self.scratch = tempfile.TemporaryDirectory(dir=self.path.parent)
+        self.folder = pathlib.Path(self.scratch.name)
 
     def start(self, *arguments):
         command = [str(self.path), *map(str, arguments)]

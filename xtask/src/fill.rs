@@ -15,7 +15,7 @@
 //! - Behind it may stand ` low` or ` high`, an end of the cell's interval; `[2]`, the second of several numbers; and
 //!   ` * 100`, another unit.
 
-use crate::paths;
+use crate::paths::{self, elements};
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::Value;
 use std::fs;
@@ -118,21 +118,18 @@ fn in_table(json: &Value, table: &str, cell: &str) -> Result<Value> {
     // A cell's text may itself hold commas.
     let is_named = |cells: &[Value]| {
         let names: Vec<String> = cells.iter().map(text).collect();
-        row.split(", ").all(|part| names.iter().any(|name| name == part)) || names.join(", ").starts_with(row)
+        let whole = format!("{}, ", names.join(", "));
+        row.split(", ").all(|part| names.iter().any(|name| name == part)) || whole.starts_with(&format!("{row}, "))
     };
-    let tables = list(&json["tables"]).iter().filter(|known| known["name"] == table);
-    let rows = tables.flat_map(|table| list(&table["rows"]).iter().map(|row| (list(&table["columns"]), list(row))));
+    let tables = elements(&json["tables"]).iter().filter(|known| known["name"] == table);
+    let rows = tables
+        .flat_map(|table| elements(&table["rows"]).iter().map(|row| (elements(&table["columns"]), elements(row))));
     let found: Vec<_> = rows.filter(|(_, cells)| is_named(cells)).collect();
     let [(columns, cells)] = found[..] else { bail!("{} rows of {table} are `{row}`", found.len()) };
     let index = columns.iter().position(|name| name == column);
     let index = index.or_else(|| column.parse::<usize>().ok()?.checked_sub(1));
     let cell = index.and_then(|index| cells.get(index));
     cell.cloned().with_context(|| format!("no column `{column}` among {columns:?}"))
-}
-
-/// The elements of an array; none of anything else.
-pub fn list(json: &Value) -> &[Value] {
-    json.as_array().map_or(&[], Vec::as_slice)
 }
 
 fn text(cell: &Value) -> String {
@@ -187,7 +184,7 @@ mod tests {
         assert_eq!(number(&in_table(&json, "t", "a, 16 | ratio").unwrap(), None, 1), Some(2.0));
         assert_eq!(number(&in_table(&json, "t", "16 | 3").unwrap(), Some(1), 1), Some(3.0));
         assert_eq!(number(&in_table(&json, "t", "64 | ratio").unwrap(), None, 2), Some(8.0));
-        assert!(in_table(&json, "t", "a | ratio").is_err());
+        assert!(in_table(&json, "t", "a | ratio").is_err() && in_table(&json, "t", "a, 6 | ratio").is_err());
         assert!(in_table(&json, "t", "16 | none").is_err());
     }
 }

@@ -72,12 +72,14 @@ pub fn replay() -> Result<()> {
     build.args(["build", "--quiet", "--locked", "--manifest-path"]).arg(folder.join("Cargo.toml"));
     build.arg("--target-dir").arg(&target).env("CARGO_PROFILE_DEV_DEBUG", "false");
     run::check(build.env("RUSTFLAGS", "--cfg fuzzing -D warnings"))?;
-    for seeds in paths::list("fuzz/seeds")? {
-        let name = seeds.file_name().context("a folder of seeds has no name")?;
-        let mut inputs = paths::list(&seeds)?;
-        let regressions = folder.join("regressions").join(name);
-        if regressions.is_dir() {
-            inputs.extend(paths::list(&regressions)?);
+    for source in paths::of_kind("fuzz/fuzz_targets", "rs")? {
+        let name = source.file_stem().context("a fuzz target has no name")?;
+        let places = ["seeds", "regressions"].map(|kind| folder.join(kind).join(name));
+        let inputs =
+            places.iter().filter(|place| place.is_dir()).map(paths::list).collect::<Result<Vec<_>>>()?.concat();
+        // Without an input the program would make some.
+        if inputs.is_empty() || name == FSOT.0 {
+            continue;
         }
         let program = target.join("debug").join(name);
         let mut replay = run::command(&program);

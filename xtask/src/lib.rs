@@ -38,6 +38,11 @@ pub mod paths {
         serde_json::from_str(&read(&name)?).with_context(|| format!("{} is no JSON", name.as_ref().display()))
     }
 
+    /// The elements of an array; none of anything else.
+    pub fn elements(json: &Value) -> &[Value] {
+        json.as_array().map_or(&[], Vec::as_slice)
+    }
+
     /// Cargo's target folder, wherever the user put it.
     pub fn target() -> PathBuf {
         std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |dir| root().join(dir))

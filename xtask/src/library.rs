@@ -58,7 +58,7 @@ pub fn check(archive: &Path) -> Result<()> {
     let panics: Vec<_> = symbols.iter().filter(|(_, name)| name.contains("panic")).collect();
     ensure!(panics.is_empty(), "the library can panic: {panics:?}");
     for (kind, name) in &symbols {
-        let (is_needed, is_seen) = (kind == "U", kind.chars().all(char::is_uppercase));
+        let (is_needed, is_seen) = (["U", "w", "v"].contains(&&**kind), kind.chars().all(char::is_uppercase));
         let may_be_needed = ALLOWED_UNDEFINED.contains(&name.as_str());
         ensure!(!is_needed || may_be_needed, "the library needs `{name}` from elsewhere");
         ensure!(is_needed || !is_seen || name.starts_with("nf_"), "the library exports `{name}`");

@@ -16,10 +16,9 @@ pub const TOOLS: [&str; 6] =
 pub const OTHERS: [&str; 7] =
     ["--workspace", "--exclude", "xtask", "--exclude", "noisefloor-release", "--exclude", "noisefloor-report"];
 
-fn program(cargo: &str, folder: &str) -> Command {
-    let mut program = run::cargo();
-    program.args([cargo, "--profile", "xtask", "--manifest-path"]).arg(paths::root().join(folder).join("Cargo.toml"));
-    program
+/// What is built of a crate.
+fn program(folder: &str) -> Command {
+    run::command(paths::target().join("xtask").join(format!("noisefloor-{folder}")))
 }
 
 /// Runs `cargo xtask COMMAND ARGUMENTS` in this process's place: its errors, its exit status and what an interruption
@@ -28,13 +27,13 @@ pub fn start(folder: &str, command: &str, arguments: &[OsString]) -> Result<()> 
     // Before a minute of compiling.
     tools::compilers()?;
     println!("building {folder}/ (about a minute, once)");
-    run::compile(&mut program("build", folder))?;
-    let mut program = program("run", folder);
-    program.args(["--quiet", "--"]).arg(command).args(arguments);
+    let package = format!("noisefloor-{folder}");
+    run::compile(run::cargo().args(["build", "--profile", "xtask", "--package", &package]))?;
+    let mut program = program(folder);
     // What the arguments name is where this process was started.
-    program.current_dir(std::env::current_dir()?);
+    program.arg(command).args(arguments).current_dir(std::env::current_dir()?);
     #[cfg(unix)]
-    return Err(std::os::unix::process::CommandExt::exec(&mut program)).context("cannot start cargo");
+    return Err(std::os::unix::process::CommandExt::exec(&mut program)).context("cannot start it");
     #[cfg(not(unix))]
     run::check(&mut program)
 }
@@ -49,9 +48,7 @@ pub fn exit(result: Result<()>) -> ExitCode {
 /// Runs a step of the tests.
 pub fn check(folder: &str, step: &str) -> Result<()> {
     run::check(run::cargo().args(["build", "--quiet", "--profile", "xtask"]).args(TOOLS))?;
-    let mut program = run::command(paths::target().join("xtask").join(format!("noisefloor-{folder}")));
-    program.args(["check", step]).stderr(Stdio::piped());
-    let output = program.spawn()?.wait_with_output()?;
+    let output = program(folder).args(["check", step]).stderr(Stdio::piped()).spawn()?.wait_with_output()?;
     let errors = String::from_utf8_lossy(&output.stderr);
     if output.status.code() == Some(NOT_RUN.into()) {
         let why = errors.lines().last().unwrap_or_default();

@@ -40,7 +40,8 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<()> {
     let start = Instant::now();
     tools::ensure()?;
-    let mut steps = Steps { options, passed: 0, failed: Vec::new(), not_run: Vec::new(), left_out: Vec::new() };
+    let mut steps =
+        Steps { options, passed: 0, failed: Vec::new(), not_run: Vec::new(), left_out: Vec::new(), among: Vec::new() };
     if options.beside {
         beside(&mut steps);
         return steps.finish(start);
@@ -147,6 +148,8 @@ struct Steps<'a> {
     /// What this machine lacks something for.
     not_run: Vec<&'static str>,
     left_out: Vec<&'static str>,
+    /// What the steps that went on beside others say of those that failed or were not run.
+    among: Vec<String>,
 }
 
 impl Steps<'_> {
@@ -162,14 +165,19 @@ impl Steps<'_> {
 
     /// Waits for what was begun.
     fn end(&mut self, Beside { heading, running }: Beside) {
+        let mut among = Vec::new();
         self.run(heading, || {
             let ended = running.and_then(|thread| thread.join().ok());
             let (heard, taken) = ended.context("it did not end")?;
             let (said, result) = heard?;
             println!("{said}   {:.1} s, most of them beside the steps above", taken.as_secs_f64());
-            let lacks = said.contains("\n   NOT RUN: ").then(|| Missing("some of them, as said above".to_owned()));
-            result.and(lacks.map_or(Ok(()), |lacks| Err(lacks.into())))
+            let is_named = |line: &&str| line.starts_with("failed: ") || line.starts_with("not run: ");
+            among.extend(said.lines().filter(is_named).map(str::to_owned));
+            result?;
+            ensure!(among.is_empty(), Missing("some of them, as said above".to_owned()));
+            Ok(())
         });
+        self.among.extend(among);
     }
 
     /// Runs one step; the others follow even if it fails.
@@ -222,6 +230,7 @@ impl Steps<'_> {
         for heading in &self.not_run {
             println!("not run: {heading}");
         }
+        self.among.iter().for_each(|line| println!("   {line}"));
         println!("{} passed, {} failed, {} not run", self.passed, self.failed.len(), self.not_run.len());
         let may_end = self.not_run.is_empty() || !self.options.strict;
         ensure!(may_end, "{} steps could not run, and --strict was given", self.not_run.len());

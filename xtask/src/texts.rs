@@ -13,14 +13,17 @@ const APART: [&str; 3] = ["docs/report/", "THIRD_PARTY.md", "report/templates/"]
 
 /// Checks the lines of every file that git knows.
 pub fn columns() -> Result<()> {
-    let files = tracked()?;
-    let of_a_kind = |name: &&String| KINDS.iter().any(|kind| name.ends_with(kind));
     let mut long = Vec::new();
-    for name in files.iter().filter(of_a_kind).filter(|name| !APART.iter().any(|apart| name.starts_with(apart))) {
-        let text = paths::read(name)?;
-        let is_document = name.ends_with(".md");
-        let is_long = |line: &str| if is_document { columns_of_text(line) } else { line.chars().count() } > WIDTH;
-        long.extend(text.lines().zip(1..).filter(|(line, _)| is_long(line)).map(|(_, at)| format!("{name}:{at}")));
+    for name in tracked()? {
+        if !KINDS.iter().any(|kind| name.ends_with(kind)) || APART.iter().any(|apart| name.starts_with(apart)) {
+            continue;
+        }
+        for (at, line) in (1..).zip(paths::read(&name)?.lines()) {
+            let columns = if name.ends_with(".md") { columns_of_text(line) } else { line.chars().count() };
+            if columns > WIDTH {
+                long.push(format!("{name}:{at}"));
+            }
+        }
     }
     ensure!(long.is_empty(), "lines of more than {WIDTH} columns:\n   {}", long.join("\n   "));
     Ok(())

@@ -1,7 +1,7 @@
 //! The tiles in `core/tiles`, made by `fsot` from their presets.
 
-use crate::fill::list;
-use crate::{paths, run};
+use crate::paths::{self, elements};
+use crate::run;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use serde_json::Value;
@@ -37,7 +37,7 @@ pub fn run(options: &Options) -> Result<()> {
     let program = paths::target().join("fsot/fsot").with_extension(std::env::consts::EXE_EXTENSION);
     let known = info(&program, None)?;
     let presets: Vec<_> =
-        list(&known["presets"]).iter().filter_map(Value::as_str).chain([SAMPLER]).map(str::to_owned).collect();
+        elements(&known["presets"]).iter().filter_map(Value::as_str).chain([SAMPLER]).map(str::to_owned).collect();
     if let Some(unknown) = options.names.iter().find(|name| !presets.contains(name)) {
         bail!("there is no tile {unknown}; there are {}", presets.join(", "));
     }
@@ -92,7 +92,7 @@ fn info(program: &Path, tile: Option<&Path>) -> Result<Value> {
 
 fn rows(sidecar: &Value) -> impl Iterator<Item = &Value> {
     let tables = ["energy", "marginal", "temporal"].into_iter();
-    tables.flat_map(|table| list(&sidecar["quality"][table]))
+    tables.flat_map(|table| elements(&sidecar["quality"][table]))
 }
 
 /// Whether two sidecars say the same, and say it at all, but for the version and the last digits of what was measured.

@@ -3,6 +3,7 @@
 use crate::run;
 use anyhow::{Result, bail, ensure};
 use std::fmt;
+use std::fs::File;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -77,13 +78,18 @@ fn is_there(file: &str) -> bool {
     std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()).any(|folder| folder.join(file).exists())
 }
 
+const DEBIAN: &str = "/etc/debian_version";
+
 /// Debian's package manager is there and this user may use it.
 pub fn can_install() -> bool {
     let user = run::read(run::command("id").arg("-u"));
-    Path::new("/etc/debian_version").exists() && user.is_ok_and(|id| id.trim() == "0")
+    Path::new(DEBIAN).exists() && user.is_ok_and(|id| id.trim() == "0")
 }
 
 fn install(packages: &[&str]) -> Result<()> {
+    // The steps that go on beside others install too, and apt-get does not wait for another.
+    let turn = File::open(DEBIAN)?;
+    turn.lock()?;
     run::check(run::command("apt-get").args(["update", "-qq"]))?;
     let mut install = run::command("apt-get");
     install.env("DEBIAN_FRONTEND", "noninteractive").args(["install", "-y", "-qq", "--no-install-recommends"]);

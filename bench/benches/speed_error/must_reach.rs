@@ -1,4 +1,4 @@
-//! The targets and whether they are met.
+//! What was to be reached, and what was measured; the report judges it.
 
 use crate::Run;
 use crate::cells::{Cell, Set, geometric_mean, worst};
@@ -19,23 +19,6 @@ const SHARES: [(&str, f64); 2] = [(LEAST_SQUARES.name, 0.5), (ROBUST.name, 1.0)]
 /// Nanoseconds for a solution of 6 unknowns.
 const SOLVE_BOUND: f64 = 150.0;
 
-/// A ratio passes if its whole interval does, and fails if none of it does.
-fn verdict(ratio: Ratio, bound: f64) -> &'static str {
-    if ratio.upper() <= bound {
-        "pass"
-    } else if ratio.lower() > bound {
-        "FAIL"
-    } else if ratio.value <= bound {
-        "pass, but for its interval"
-    } else {
-        "FAIL, but for its interval"
-    }
-}
-
-fn time_verdict(ns: f64, bound: f64) -> &'static str {
-    if ns <= bound { "pass" } else { "FAIL" }
-}
-
 /// Nanoseconds per sample at order 2.
 fn find(run: &Run, dims: usize, n: usize, name: &str) -> f64 {
     let same = |speed: &&Speed| (speed.dims, speed.order, speed.n, speed.name) == (dims, 2, n, name);
@@ -52,29 +35,28 @@ pub(crate) struct Target {
     /// Where it was measured, or what else took how long.
     note: String,
     bound: f64,
-    verdict: &'static str,
 }
 
 /// The table in Markdown.
 pub(crate) fn table(run: &Run) -> String {
-    let mut out = "| target | measured | bound | |\n|---|---|---|---|\n".to_owned();
-    for Target { target, value, half_width, unit, note, bound, verdict } in targets(run) {
+    let mut out = "| target | measured | bound |\n|---|---|---|\n".to_owned();
+    for Target { target, value, half_width, unit, note, bound } in targets(run) {
         let value = match half_width {
             Some(half_width) => format!("{value:.3} ± {half_width:.3}"),
             None => format!("{value:.1} {unit}"),
         };
         let note = if note.is_empty() { note } else { format!(" ({note})") };
-        let _ = writeln!(out, "| {target} | {value}{note} | {bound} | {verdict} |");
+        let _ = writeln!(out, "| {target} | {value}{note} | {bound} |");
     }
     out
 }
 
 /// The same as comma-separated values.
 pub(crate) fn csv(run: &Run) -> String {
-    let mut out = "target;value;half_width;unit;note;bound;verdict\n".to_owned();
-    for Target { target, value, half_width, unit, note, bound, verdict } in targets(run) {
+    let mut out = "target;value;half_width;unit;note;bound\n".to_owned();
+    for Target { target, value, half_width, unit, note, bound } in targets(run) {
         let half_width = half_width.map_or(String::new(), |half_width| format!("{half_width:.5}"));
-        let _ = writeln!(out, "{target};{value:.5};{half_width};{unit};{note};{bound};{verdict}");
+        let _ = writeln!(out, "{target};{value:.5};{half_width};{unit};{note};{bound}");
     }
     out
 }
@@ -83,7 +65,7 @@ fn targets(run: &Run) -> Vec<Target> {
     let mut all = Vec::new();
     let mut ratios = |target: String, ratio: Ratio, note: String, bound: f64| {
         let (value, half_width) = (ratio.value, Some(ratio.half_width));
-        all.push(Target { target, value, half_width, unit: "ratio", note, bound, verdict: verdict(ratio, bound) });
+        all.push(Target { target, value, half_width, unit: "ratio", note, bound });
     };
     let robust: Vec<&Cell> = run.cells.iter().filter(|cell| cell.method == ROBUST.name).collect();
     for degree in crate::cells::DEGREES {
@@ -100,8 +82,7 @@ fn targets(run: &Run) -> Vec<Target> {
         ratios(target, geometric_mean(nine), String::new(), bound);
     }
     let mut times = |target: String, value: f64, note: String, bound: f64| {
-        let verdict = time_verdict(value, bound);
-        all.push(Target { target, value, half_width: None, unit: "ns", note, bound, verdict });
+        all.push(Target { target, value, half_width: None, unit: "ns", note, bound });
     };
     for (name, share) in SHARES {
         for (dims, n, quoted) in QUOTED {

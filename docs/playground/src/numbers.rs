@@ -4,8 +4,8 @@
 use noisefloor_playground::{measure, prepare, reference, render};
 
 fn main() {
-    let given: Vec<f32> = std::env::args().skip(1).filter_map(|word| word.parse().ok()).collect();
-    let [samples, sampler, fits, frame, sigma] = given[..] else {
+    let given: Result<Vec<f32>, _> = std::env::args().skip(1).map(|word| word.parse()).collect();
+    let [samples, sampler, fits, frame, sigma] = given.unwrap_or_default()[..] else {
         eprintln!("numbers SAMPLES SAMPLER FITS FRAME SIGMA: five numbers are needed");
         std::process::exit(2);
     };

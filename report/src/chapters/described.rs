@@ -11,11 +11,11 @@ use super::plan::{Plan, packages};
 use super::statistics::Estimate;
 use super::targets::Bound;
 use crate::measure::table::{Filter, Row, Table, Words};
-use anyhow::Result;
+use anyhow::{Result, bail};
 use itertools::Itertools;
 use serde::Deserialize;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use xtask::tools::Package;
 
 #[derive(Deserialize, Default)]
@@ -34,7 +34,7 @@ pub(crate) struct Description {
     /// Where a `--full` run measures other things: a chapter of its own, which other runs leave as it is.
     pub(crate) full: Option<Full>,
     /// What was chosen.
-    settings: BTreeMap<String, Value>,
+    pub(crate) settings: BTreeMap<String, Value>,
     setting: Vec<Counted>,
     quote: Vec<Quote>,
     table: Vec<Described>,
@@ -154,7 +154,6 @@ enum Show {
     Geometric,
     /// The first.
     Once,
-    Largest,
     /// A number, and half of its interval if there is one: "2.5 +- 0.1".
     Written,
     /// A number whose interval's ends have columns of their own.
@@ -206,7 +205,7 @@ impl Description {
         }
     }
 
-    pub(crate) fn write(&self, measured: Measured, chapter: &mut Chapter) -> Result<()> {
+    pub(crate) fn write(&self, measured: Measured, chapter: &mut Chapter, plan: &Plan) -> Result<()> {
         for (name, value) in &self.settings {
             chapter.setting(name, value);
         }
@@ -233,7 +232,7 @@ impl Description {
             measured(&described.from)?.map(|table| described.write(table, chapter)).transpose()?;
         }
         for target in &self.target {
-            measured(&target.from)?.map(|table| target.write(table, chapter)).transpose()?;
+            measured(&target.from)?.map(|table| target.write(table, chapter, plan)).transpose()?;
         }
         Ok(())
     }
@@ -284,8 +283,10 @@ impl Described {
 }
 
 impl Target {
-    fn write(&self, table: Table, chapter: &mut Chapter) -> Result<()> {
+    /// Fails where a full run, which measures all places, has none for a limit.
+    fn write(&self, table: Table, chapter: &mut Chapter, plan: &Plan) -> Result<()> {
         let table = table.melted(&self.melt)?.only(&self.rows)?;
+        let mut judged = BTreeSet::new();
         let limits = [&self.at_most, &self.at_least, &self.below];
         let bounds = [Bound::AtMost, Bound::AtLeast, Bound::Below];
         for each in table.combinations(&self.each, &self.rows)? {
@@ -300,10 +301,17 @@ impl Target {
                 if let (Some(&limit), Some(estimate)) = (limit, self.figure.estimate(&table, &each)?) {
                     let (statement, place) = (filled(&self.statement, &each), filled(&self.place, &each));
                     chapter.target(&statement, &place, estimate, self.figure.unit, bound(limit));
+                    judged.insert(key.clone());
                 }
             }
         }
-        Ok(())
+        let unused = |limit: &Limit| match limit {
+            Limit::Of(limits) => limits.keys().find(|key| !judged.contains(*key)).cloned(),
+            Limit::One(_) => None,
+        };
+        let unused = limits.into_iter().flatten().find_map(unused).filter(|_| plan.is_full());
+        unused
+            .map_or(Ok(()), |key| bail!("`{}`: no place is `{key}`, which has a limit: mend its name", self.statement))
     }
 }
 
@@ -355,18 +363,22 @@ impl Query {
         let Some((value, others)) = least else { return Ok(None) };
         Ok(match self.show {
             Show::Mean | Show::Geometric => self.sum_up(&own.iter().map(|own| own / value).collect::<Vec<_>>()),
-            _ => Some(Estimate::ratio(&own, &others)),
+            _ if own.len() == others.len() => Some(Estimate::ratio(&own, &others)),
+            _ => bail!("{}: {} numbers of {} over {} are no pairs", table.name, own.len(), self.of, others.len()),
         })
     }
 
     fn numbers(&self, table: &Table, rows: &Filter) -> Result<Vec<f64>> {
-        let numbers = table.only(rows)?;
-        let mut all = numbers.measured(&self.of)?;
-        if let Some(per) = &self.per {
-            all.iter_mut().zip(numbers.numbers(per)?).for_each(|(number, per)| *number /= per);
+        // Also where there is no such row.
+        table.column(&self.of)?;
+        let mut all = Vec::new();
+        for row in table.only(rows)?.rows() {
+            if let Some(number) = row.optional(&self.of)? {
+                let per = self.per.as_ref().map_or(Ok(1.0), |per| row.number(per))?;
+                all.push(number / per * self.times.unwrap_or(1.0));
+            }
         }
-        let factor = self.times.unwrap_or(1.0);
-        Ok(all.into_iter().map(|number| number * factor).collect())
+        Ok(all)
     }
 
     fn sum_up(&self, numbers: &[f64]) -> Option<Estimate> {
@@ -376,7 +388,6 @@ impl Query {
             Show::Geometric if numbers.iter().any(|number| !number.is_finite()) => None,
             Show::Geometric => Some(Estimate::geometric_mean(numbers)),
             Show::Once => Some(Estimate::exact(first)).filter(|_| first.is_finite()),
-            Show::Largest => Some(Estimate::exact(numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max))),
             _ => Some(Estimate::median(numbers)),
         }
     }

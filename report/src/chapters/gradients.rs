@@ -1,6 +1,7 @@
 //! The chapter on minibatches' gradients: the trainers of examples_c, run as report/chapters/gradients_runs.toml says.
 
 use super::prelude::*;
+use super::template::word;
 use crate::measure::plot::{Plot, Series};
 use crate::measure::{progress, running};
 use indicatif::ProgressBar;
@@ -25,8 +26,6 @@ struct Network {
     title: String,
     /// A folder; none: MNIST, if it can be had.
     data: Option<String>,
-    /// Adam's learning rate.
-    rate: String,
     seeds: String,
     epochs: String,
     variance: String,
@@ -68,13 +67,17 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let mut tables = BTreeMap::new();
     for network in &runs.network {
         let Some(data) = network.data.clone().or_else(|| Some(mnist.as_ref()?.to_str()?.to_owned())) else { continue };
-        let (name, rate) = (&network.name, &network.rate);
+        let name = &network.name;
+        // The chapter's settings: Adam's learning rate, draws of a step, units of the layers between.
+        let setting = |what: &str| report.description.settings.get(&format!("{name}: {what}")).and_then(word);
+        let setting = |what: &str| setting(what).with_context(|| format!("gradients.toml has no {what} of {name}"));
+        let (rate, batch, hidden) = (&setting("rate")?, setting("batch")?, setting("hidden")?.replace('-', ","));
         let train = |epochs: &str, more: &[&str]| {
-            let network = ["--data", &data, "--epochs", epochs, "--rate", rate, "--batch", "64", "--hidden", "128,64"];
+            let network = ["--data", &data, "--epochs", epochs, "--rate", rate, "--batch", &batch, "--hidden", &hidden];
             run_one(&programs["train_mlp.c"], name, &[&network[..], more].concat(), &bar)
         };
         let (csv, said) = train(&network.epochs, &["--modes", &MODES.join(","), "--seeds", &network.seeds])?;
-        let plot = error_plot(network, &Table::parse(&csv, name)?)?;
+        let plot = error_plot(network, rate, &Table::parse(&csv, name)?)?;
         report.output.write_text(&format!("{}-{name}-time.svg", report.names[0]), &plot)?;
         tables.insert(name.clone(), summary(&said)?);
 
@@ -87,7 +90,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
         };
         let variance = Table::read(scratch.path(), "variance")?.with("line", named)?;
         if network.data.is_none() {
-            let plot = variance_plot(network, &variance, &runs.method)?;
+            let plot = variance_plot(network, rate, &variance, &runs.method)?;
             report.output.write_text(&format!("{}-{name}-variance.svg", report.names[0]), &plot)?;
         }
         tables.insert(format!("{name} variance"), variance);
@@ -150,7 +153,7 @@ fn line(table: &Table, name: &str, key: &str, x: &str, (y, factor): (&str, f64))
     Ok(series)
 }
 
-fn error_plot(network: &Network, table: &Table) -> Result<String> {
+fn error_plot(network: &Network, rate: &str, table: &Table) -> Result<String> {
     let line = |mode: &&str| line(&table.of(&[("mode", mode)]), mode, "epoch", "seconds", ("test_error", 100.0));
     let mut series: Vec<Series> = MODES.iter().map(line).collect::<Result<_>>()?;
     for line in &mut series {
@@ -158,18 +161,18 @@ fn error_plot(network: &Network, table: &Table) -> Result<String> {
         line.points.retain(|&(at, _)| at > 0.0);
         line.band.retain(|&(at, ..)| at > 0.0);
     }
-    let Network { title, rate, seeds, .. } = network;
+    let Network { title, seeds, .. } = network;
     let title = format!("{title}, rate {rate}: mean of {seeds} seeds, 95 % confidence intervals");
     Plot { title: &title, x: "seconds of training", y: "test error, %", series: &series }.svg()
 }
 
-fn variance_plot(network: &Network, table: &Table, methods: &[Method]) -> Result<String> {
+fn variance_plot(network: &Network, rate: &str, table: &Table, methods: &[Method]) -> Result<String> {
     let line = |Method { name, is, colour }: &Method| -> Result<Series> {
         let series = line(&table.of(&[("line", name)]), name, "epoch", "epoch", ("ratio", 1.0))?;
         Ok(Series { dashed: is[1] == "0.2", colour: Some(*colour), ..series })
     };
     let series: Vec<Series> = methods.iter().map(line).collect::<Result<_>>()?;
-    let Network { title, rate, .. } = network;
+    let title = &network.title;
     let title = format!("{title}, rate {rate}: variance of the gradient estimate, one network trained uniformly");
     Plot { title: &title, x: "epoch", y: "variance / uniform's", series: &series }.svg()
 }

@@ -11,8 +11,7 @@ use anyhow::Result;
 use itertools::Itertools;
 use serde_json::{Value, json};
 use std::path::Path;
-use xtask::fill::list;
-use xtask::paths;
+use xtask::paths::{self, elements};
 
 /// The index of the chapters in `folder`, and of one that has just been written and is not there yet.
 pub(super) fn write(folder: &Path, new: Option<(&str, &Value)>) -> Result<String> {
@@ -23,7 +22,10 @@ pub(super) fn write(folder: &Path, new: Option<(&str, &Value)>) -> Result<String
             let json = match new {
                 Some((written, json)) if written == name => Some(json.clone()),
                 // A chapter that was never written is not there.
-                _ => paths::json(folder.join(format!("{name}.json"))).ok(),
+                _ => Some(folder.join(format!("{name}.json")))
+                    .filter(|path| path.exists())
+                    .map(paths::json)
+                    .transpose()?,
             };
             all.extend(json.filter(|json| json["run"].is_object()));
         }
@@ -62,7 +64,7 @@ fn machines(index: &mut Chapter, all: &[Value]) {
     let row = |machine: &Value| {
         let here = all.iter().filter(|one| one["run"]["machine"] == *machine);
         let names = here.filter_map(|one| word(&one["run"]["name"])).join(", ");
-        let compilers = list(&machine["compilers"]).iter().filter_map(word).join("; ");
+        let compilers = elements(&machine["compilers"]).iter().filter_map(word).join("; ");
         let cores = word(&machine["cores"]);
         json!([names, machine["processor"], cores, machine["clock"], machine["kernel"], compilers])
     };
@@ -77,8 +79,8 @@ fn targets(index: &mut Chapter, all: &[Value]) {
     let mut rows = Vec::new();
     for one in all {
         let link = word(&one["run"]["name"]).map(|name| format!("[{name}]({name}.md)"));
-        for table in list(&one["tables"]).iter().filter(|table| table["name"] == "targets") {
-            rows.extend(list(&table["rows"]).iter().map(|cells| [&[json!(link)], list(cells)].concat()));
+        for table in elements(&one["tables"]).iter().filter(|table| table["name"] == "targets") {
+            rows.extend(elements(&table["rows"]).iter().map(|cells| [&[json!(link)], elements(cells)].concat()));
         }
     }
     for name in ["targets", "targets reached everywhere", "targets reached everywhere by the value"] {

@@ -17,8 +17,9 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let (names @ [name, ..], data) = (report.names, paths::target().join("data"));
     let is_training = name == "training";
     let programs = if name == "python" { &["overhead", "memory"][..] } else { &names[..1] };
-    let python = std::env::var_os(PEERS).filter(|_| !is_training).map_or(debian, PathBuf::from);
-    if is_training && !report.plan.is_quick() {
+    let is_quick = report.plan.is_quick();
+    let python = std::env::var_os(PEERS).filter(|_| !is_training && !is_quick).map_or(debian, PathBuf::from);
+    if is_training && !is_quick {
         fetch(report, &python, &data);
     }
     report.compiled();

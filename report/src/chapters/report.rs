@@ -26,7 +26,7 @@ impl Report<'_> {
     /// The chapter as it is described.
     pub(crate) fn described(&self, measured: Measured) -> Result<Chapter> {
         let mut chapter = Chapter::new(self.names[1]);
-        self.description.write(measured, &mut chapter)?;
+        self.description.write(measured, &mut chapter, self.plan)?;
         Ok(chapter)
     }
 }

@@ -9,12 +9,13 @@ use super::template::Exists;
 use super::{index, json, machine, program, template};
 use crate::measure::output::Output;
 use crate::measure::progress;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use xtask::paths;
+use xtask::tools::Missing;
 
 #[derive(Args, Default)]
 pub(crate) struct Options {
@@ -67,21 +68,21 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         _ = program::build("--bench", &programs, &plan);
     }
     let bar = progress::bar(wanted.iter().map(|(.., of)| of.seconds).sum())?;
-    let (mut written, mut failed) = (Vec::new(), Vec::new());
+    let (mut failed, mut is_missing) = (Vec::new(), true);
     for (number, one @ (name, _, description)) in (1..).zip(&wanted) {
         bar.set_message(format!("chapter {number} of {}: {name}", wanted.len()));
-        match write_one(one, &plan, &folder, &machine) {
-            Ok(()) => written.push(*name),
-            // An error that says what is missing stays one.
-            Err(error) if wanted.len() == 1 => return Err(error),
-            // The others do not depend on it.
-            Err(error) => failed.push(format!("{name}: {error:#}")),
+        // The others do not depend on it.
+        if let Err(error) = write_one(one, &plan, &folder, &machine) {
+            is_missing &= error.is::<Missing>();
+            failed.push(format!("{name}: {error:#}"));
         }
         bar.inc(description.seconds);
     }
     bar.finish_and_clear();
     if !failed.is_empty() {
-        bail!("written: {}; failed, and left as they were:\n{}", written.join(", "), failed.join("\n"));
+        let why = format!("failed, and left as they were:\n{}", failed.join("\n"));
+        // An error that says what is missing stays one.
+        return Err(if is_missing { Missing(why).into() } else { anyhow!(why) });
     }
     let seconds = start.elapsed().as_secs_f64();
     println!("report: {} (made in {seconds:.0} s)", folder.display());

@@ -10,8 +10,7 @@
 use crate::measure::markdown;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
-use xtask::fill::list;
-use xtask::paths;
+use xtask::paths::{self, elements};
 use xtask::texts::WIDTH;
 
 /// Which pictures there are.
@@ -36,7 +35,7 @@ struct Section {
 }
 
 fn fill(template: &str, json: &Value, exists: Exists) -> Result<String> {
-    let mut tables: Vec<&Value> = list(&json["tables"]).iter().collect();
+    let mut tables: Vec<&Value> = elements(&json["tables"]).iter().collect();
     let (mut heading, mut sections) = (String::new(), vec![Section::default()]);
     for block in template.trim().split("\n\n").map(str::trim) {
         let name = block.strip_prefix("{{table ").and_then(|rest| rest.strip_suffix("}}"));
@@ -123,9 +122,9 @@ pub(crate) fn word(value: &Value) -> Option<String> {
 
 fn table(table: &Value) -> String {
     let texts = |cells: &Value| -> Vec<String> {
-        list(cells).iter().map(|cell| word(cell).unwrap_or_else(|| "-".to_owned())).collect()
+        elements(cells).iter().map(|cell| word(cell).unwrap_or_else(|| "-".to_owned())).collect()
     };
-    let rows: Vec<Vec<String>> = list(&table["rows"]).iter().map(texts).collect();
+    let rows: Vec<Vec<String>> = elements(&table["rows"]).iter().map(texts).collect();
     let words = table["words"].as_u64().unwrap_or(1) as usize;
     markdown::lines(&texts(&table["columns"]), words, &rows).trim_end().to_owned()
 }

@@ -127,13 +127,6 @@ impl Table {
         Ok(table)
     }
 
-    /// The numbers of a column, without empty cells.
-    pub(crate) fn measured(&self, heading: &str) -> Result<Vec<f64>> {
-        self.column(heading)?;
-        let numbers = self.rows().map(|row| row.optional(heading));
-        Ok(numbers.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
-    }
-
     /// The different cells of some columns together; columns are sorted as the filter lists their cells, or by where
     /// they come first. Of no columns one, which lets all rows through.
     pub(crate) fn combinations(&self, headings: &[impl AsRef<str>], by: &Filter) -> Result<Vec<Filter>> {
@@ -173,7 +166,7 @@ impl Table {
     }
 
     /// `NAME[2]` is the second column of this name.
-    fn column(&self, heading: &str) -> Result<usize> {
+    pub(crate) fn column(&self, heading: &str) -> Result<usize> {
         let (name, skip) = heading.strip_suffix("[2]").map_or((heading, 0), |name| (name, 1));
         let mut columns = (0..self.headings.len()).filter(|&column| self.headings[column] == name);
         columns.nth(skip).with_context(|| format!("{} has no column `{heading}`", self.name))

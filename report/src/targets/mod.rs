@@ -53,7 +53,7 @@ fn write(tables: &[Table]) -> Result<()> {
     let description: Description = plan.read("sizes")?;
     let mut chapter = Chapter::new(description.names("sizes", &plan)[1]);
     let find = |name: &str| tables.iter().find(|table| table.name == name).cloned().context("no such table");
-    description.write(&find, &mut chapter)?;
+    description.write(&find, &mut chapter, &plan)?;
     let compiler = run::read(run::command(run::DEBIANS[1]).arg("--version"))?;
     chapter.setting("compiler", compiler.trim().split(" (").next().unwrap_or_default());
     if !find("sizes")?.distinct("kind")?.contains(&sizes::KINDS[2]) {
