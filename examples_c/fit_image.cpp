@@ -15,12 +15,12 @@ int main(int argc, char **argv)
         const fit::Options options = fit::parse(argc, argv);
         if (options.help) {
             fit::usage();
-            return 0;
+        } else {
+            const fit::Picture picture = fit::read_ppm(options.image);
+            if (options.batch > picture.pixels())
+                throw std::runtime_error("--batch: more than the picture's pixels");
+            (options.variance ? fit::compare_errors : fit::compare_training)(picture, options);
         }
-        const fit::Picture picture = fit::read_ppm(options.image);
-        if (options.batch > picture.pixels())
-            throw std::runtime_error("--batch: more than the picture's pixels");
-        (options.variance ? fit::compare_errors : fit::compare_training)(picture, options);
         if (std::fflush(stdout) != 0 || std::ferror(stdout))
             throw std::runtime_error("standard output cannot be written");
     } catch (const std::exception &error) {

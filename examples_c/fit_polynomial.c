@@ -2,9 +2,8 @@
  * from minibatches of 32, drawn and weighted in several ways. C99.
  *
  *   cc -std=c99 -O3 -Iinclude examples_c/fit_polynomial.c target/noisefloor/libnoisefloor.a -lm -o fit_polynomial
- *   ./fit_polynomial > losses.csv            # method,seed,step,loss; a table on standard error
- *   ./fit_polynomial --variance > errors.csv # step,method,coefficient,error,bias: of the gradient, over uniform's
- * error
+ *   ./fit_polynomial > losses.csv             # method,seed,step,loss; a table on standard error
+ *   ./fit_polynomial --variance > errors.csv  # step,method,coefficient,error,bias: the gradient's, over uniform's
  *
  * To see how the library is used, read fit_polynomial/sampler.h. */
 #include "fit_polynomial/sampler.h"

@@ -89,5 +89,9 @@ int main()
     std::printf("root mean squared errors of one sample in each pixel\n");
     std::printf("mean       %.5f\n", std::sqrt(mean / (width * height)));
     std::printf("noisefloor %.5f\n", std::sqrt(shared / (width * height)));
+    if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
+        std::fprintf(stderr, "image: standard output cannot be written\n");
+        return 1;
+    }
     return shared < mean ? 0 : 1;
 }

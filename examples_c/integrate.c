@@ -33,5 +33,9 @@ int main(void)
     printf("exact      %.6f\n", exact);
     printf("mean       %.6f  error %+.6f\n", mean, mean - exact);
     printf("noisefloor %.6f  error %+.6f\n", estimate.mean[0], estimate.mean[0] - exact);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        fprintf(stderr, "integrate: standard output cannot be written\n");
+        return 1;
+    }
     return 0;
 }

@@ -5,7 +5,9 @@
  * all_reduce() MPI_Allreduce(). */
 #define _POSIX_C_SOURCE 200112L
 #include "noisefloor.h"
+#include <errno.h>
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,11 +22,14 @@ static const uint32_t sizes[RANKS] = {12000, 3000, 20000, 5000};
 
 static int up[RANKS][2], down[RANKS][2], rank;
 
+/* A signal may come in between: nothing was transferred then. */
 static int transfer(int receive, int file, void *data, size_t bytes)
 {
     char *at = data;
     while (bytes > 0) {
         ssize_t n = receive ? read(file, at, bytes) : write(file, at, bytes);
+        if (n < 0 && errno == EINTR)
+            continue;
         if (n <= 0)
             return 0;
         at += n;
@@ -210,27 +215,32 @@ static int run(void)
     check(nf_table_update(&table, every, first, sizes[rank], 0.0f));
     good = statistics(&table, &common, &own);
     good &= train(&table, &common, &own);
-    fflush(stdout);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        fprintf(stderr, "process %d: standard output cannot be written\n", rank);
+        good = 0;
+    }
     return good ? 0 : 1;
 }
 
 int main(void)
 {
     pid_t child[RANKS];
-    int r, k, failed = 0;
+    int r, k, started, failed = 0;
+    signal(SIGPIPE, SIG_IGN); /* who writes to a process that has ended is told by write(), and ends with a status */
     for (r = 0; r < RANKS; ++r)
         if (pipe(up[r]) != 0 || pipe(down[r]) != 0) {
             perror("pipe");
             return 2;
         }
-    for (r = 0; r < RANKS; ++r) {
-        child[r] = fork();
-        if (child[r] < 0) {
+    for (started = 0; started < RANKS; ++started) {
+        child[started] = fork();
+        if (child[started] < 0) {
             perror("fork");
-            return 2;
+            failed = 1;
+            break;
         }
-        if (child[r] == 0) {
-            rank = r;
+        if (child[started] == 0) {
+            rank = r = started;
             for (k = 0; k < RANKS; ++k) {
                 close(up[k][0]);
                 close(down[k][1]);
@@ -246,10 +256,13 @@ int main(void)
         close(up[r][1]);
         close(down[r][0]);
     }
-    relay();
-    for (r = 0; r < RANKS; ++r)
-        close(down[r][1]); /* whoever still waits is told */
+    if (started == RANKS)
+        relay();
     for (r = 0; r < RANKS; ++r) {
+        close(up[r][0]);
+        close(down[r][1]); /* whoever still waits is told */
+    }
+    for (r = 0; r < started; ++r) {
         int status = 1;
         failed |= waitpid(child[r], &status, 0) != child[r] || !WIFEXITED(status) || WEXITSTATUS(status) != 0;
     }

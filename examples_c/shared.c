@@ -62,5 +62,9 @@ int main(void)
     printf("root mean squared errors of one sample in each pixel\n");
     printf("mean       %.4f\n", sqrt(alone / PIXELS));
     printf("noisefloor %.4f\n", sqrt(shared / PIXELS));
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        fprintf(stderr, "shared: standard output cannot be written\n");
+        return 1;
+    }
     return 0;
 }

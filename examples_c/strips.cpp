@@ -1,11 +1,13 @@
-// The image of image.cpp by threads, each a strip of it: the same bits as from one call. It prints the errors of the
-// mean and of noisefloor, and how many pixels differ.
+// An image by threads, each a strip of it: the same bits as from one call. It prints the errors of the mean and of
+// noisefloor, and how many pixels differ.
 #include "noisefloor.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <thread>
+#include <exception>
+#include <future>
+#include <stdexcept>
 #include <vector>
 
 namespace nf = noisefloor;
@@ -30,35 +32,40 @@ static double exact(uint32_t x, uint32_t y)
     return sum / (n * n);
 }
 
-int main()
+// Throws if noisefloor refuses something. Returns whether the strips are the image, and better than the mean.
+static bool run()
 {
     std::vector<float> u(2 * width * height), f(width * height);
     nf_sampler first = nf_sampler_pixel(0, 0, 0, 0);
     const uint32_t dims = 2;
     if (nf_sampler_fill(&first, &dims, 1, width, height, 1, u.data(), u.size()) != NF_OK)
-        return 1;
+        throw std::runtime_error("nf_sampler_fill refuses its arguments");
 
     const nf::config config = nf::config(2, 3).with_stratified_samples();
     const nf::image image(width, height);
     std::vector<nf_estimate> out(width * height), whole(width * height);
 
-    // Samples of a strip, and its pixels once all windows that have one of them are there: a renderer waits for the
-    // strips beside, here for all.
+    // Samples of a strip, and its pixels once those of all windows on it are there: a renderer waits for the strips
+    // beside, here for all.
     const auto render = [&](uint32_t y) {
         for (uint32_t i = y * width; i < (y + strip) * width; ++i)
             f[i] = radiance(i % width, i / width, &u[2 * i]);
     };
     const auto estimate = [&](uint32_t y) {
-        const nf::image part = image.with_parts({0, y, width, strip}, {0, 0, width, height});
+        const nf_cv_rectangle wanted = {0, y, width, strip}, given = image.with_parts(wanted, {}).needed();
+        const nf::image part = image.with_parts(wanted, given);
+        const size_t start = given.y * width, pixels = given.height * width; // given: whole rows, as wanted
         std::vector<uint64_t> memory(config.image_workspace_size(part, 1) / 8 + 1);
-        nf::estimate_image(config, part, {u, f}, memory, {&out[y * width], width * strip});
+        nf::estimate_image(config, part, {{&u[2 * start], 2 * pixels}, {&f[start], pixels}}, memory,
+                           {&out[y * width], width * strip});
     };
     for (int step = 0; step < 2; ++step) {
-        std::vector<std::thread> threads;
+        // An exception that leaves a std::thread ends the program without a word; get() throws it here.
+        std::vector<std::future<void>> threads;
         for (uint32_t y = 0; y < height; y += strip)
-            threads.emplace_back([&, y] { step == 0 ? render(y) : estimate(y); });
-        for (std::thread &thread : threads)
-            thread.join();
+            threads.push_back(std::async(std::launch::async, [&, y] { step == 0 ? render(y) : estimate(y); }));
+        for (std::future<void> &thread : threads)
+            thread.get();
     }
 
     std::vector<uint64_t> memory(config.image_workspace_size(image, 1) / 8 + 1);
@@ -74,5 +81,18 @@ int main()
     std::printf("mean       %.5f\n", std::sqrt(mean / (width * height)));
     std::printf("noisefloor %.5f\n", std::sqrt(ours / (width * height)));
     std::printf("%u pixels differ from those of one call\n", different);
-    return different == 0 && ours < mean ? 0 : 1;
+    return different == 0 && ours < mean;
+}
+
+int main()
+{
+    try {
+        const bool good = run();
+        if (std::fflush(stdout) != 0 || std::ferror(stdout))
+            throw std::runtime_error("standard output cannot be written");
+        return good ? 0 : 1;
+    } catch (const std::exception &error) {
+        std::fprintf(stderr, "strips: %s\n", error.what());
+        return 1;
+    }
 }

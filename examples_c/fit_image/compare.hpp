@@ -99,6 +99,9 @@ inline void compare_errors(const Picture &picture, const Options &options)
 {
     const std::uint32_t pixels = std::uint32_t(picture.pixels());
     const std::uint32_t epoch = (pixels + options.batch - 1) / options.batch;
+    if (options.steps <= epoch)
+        throw std::runtime_error("--variance: the tables start after an epoch, so --steps must be above " +
+                                 std::to_string(epoch) + ", not " + std::to_string(options.steps));
     std::vector<std::uint32_t> states = {epoch};
     for (std::uint32_t step = options.steps / 4; step <= options.steps; step += std::max(1u, options.steps / 4))
         if (step > epoch)

@@ -38,9 +38,9 @@ inline void usage()
                "  --variance            errors of the gradient estimates at the same states, instead of training\n"
                "  --batches N           minibatches per state of --variance [100]\n"
                "methods:\n",
-               stderr);
+               stdout);
     for (const Method &method : methods())
-        std::fprintf(stderr, "  %-9s %s\n", method.name, method.what);
+        std::printf("  %-9s %s\n", method.name, method.what);
 }
 
 inline std::vector<const Method *> parse_methods(const std::string &names)

@@ -15,7 +15,7 @@ typedef struct options {
     int variance;
 } options;
 
-static void usage(void)
+static void usage(FILE *to)
 {
     fputs("usage: fit_polynomial [options]\n"
           "  --variance            errors of the gradient estimates at the same states, instead of training\n"
@@ -29,7 +29,7 @@ static void usage(void)
           "  --uniform-fraction D  part of every distribution that is uniform [.2]\n"
           "  --momentum M          how much of an importance is kept when its item is visited [0]\n"
           "  --beta B              add omis4-beta: optimal MIS with momentum B over the steps [0: leave it out]\n",
-          stderr);
+          to);
 }
 
 static double number(const char *name, const char *text, double low, double high)
@@ -57,7 +57,9 @@ static options parse(int argc, char **argv)
     for (int i = 1; i < argc; ++i) {
         const char *name = argv[i], *text = i + 1 < argc ? argv[i + 1] : NULL;
         if (strcmp(name, "--help") == 0) {
-            usage();
+            usage(stdout);
+            if (fflush(stdout) != 0)
+                fail("standard output", "cannot be written");
             exit(0);
         }
         if (strcmp(name, "--variance") == 0) {
@@ -86,7 +88,7 @@ static options parse(int argc, char **argv)
         else if (strcmp(name, "--beta") == 0)
             o.beta = number(name, text, 0.0, 0.99);
         else {
-            usage();
+            usage(stderr);
             fail(name, "unknown option");
         }
     }

@@ -44,7 +44,7 @@ public:
         : Rendering(options.estimators, options), integrand_(integrand), sampler_(sampler),
           dims_(dims(integrand.domains()))
     {
-        pass_ = std::min(options.accumulate, (options.spp + 3) / 4 * 4);
+        pass_ = std::min(options.accumulate, options.spp);
         EstimatorSetup setup = estimator_setup(integrand, options, 1);
         for (const std::string &name : names_) {
             if (shares(name))

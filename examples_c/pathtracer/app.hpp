@@ -3,7 +3,6 @@
 
 #include "accumulate.hpp"
 #include "mis_integrand.hpp"
-#include "program.hpp"
 #include "render.hpp"
 #include "scene_integrand.hpp"
 #include "statistics.hpp"
@@ -62,19 +61,23 @@ inline void render(const Options &options, const Integrand &integrand, uint32_t 
     if (!options.statistics.empty())
         halves = std::make_unique<Halves>(options.statistics[0], options.statistics[1], options.width, options.height);
     std::vector<Statistics> statistics(halves ? names.size() : 0, Statistics(options.width, options.height));
+    const auto setup_of = [&](uint64_t seed) {
+        return SamplerSetup{integrand.domains(), dims(integrand.domains()), options.spp, options.frame, seed,
+                            options.scramble};
+    };
     std::unique_ptr<SamplerFactory> samplers;
-    if (!options.reference)
+    if (!options.reference) {
         samplers = std::make_unique<SamplerFactory>(options.sampler, options.tile, options.table);
+        samplers->make(setup_of(options.seed + options.seeds - 1)); // Fails before any work if it has not so many.
+    }
     Outputs outputs;
     for (uint32_t i = 0; i < options.seeds; ++i) {
         const uint64_t seed = options.seed + i;
-        SamplerSetup setup{integrand.domains(), dims(integrand.domains()), options.spp, options.frame, seed,
-                           options.scramble};
         std::unique_ptr<Sampler> sampler;
         if (samplers)
-            sampler = samplers->make(setup);
+            sampler = samplers->make(setup_of(seed));
         else
-            sampler = std::make_unique<LatticeSampler>(setup);
+            sampler = std::make_unique<LatticeSampler>(setup_of(seed));
         std::unique_ptr<Rendering> renderer;
         if (options.accumulate)
             renderer = std::make_unique<AccumulatingRenderer>(integrand, *sampler, options);
@@ -118,15 +121,22 @@ inline void render(const Options &options, const Program &program)
     render(options, SceneIntegrand(scene, *intersector, options.width, options.height, options.filter));
 }
 
+// Throws unless all that was printed has arrived: what is still in a buffer may find no room.
+inline void finish_output()
+{
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+        throw std::runtime_error("standard output cannot be written");
+}
+
 inline int run(int argc, char **argv, const Program &program)
 {
     try {
         Options options;
-        if (!parse(argc, argv, program, options)) {
+        if (parse(argc, argv, program, options))
+            render(options, program);
+        else
             print_usage(stdout, program);
-            return 0;
-        }
-        render(options, program);
+        finish_output();
         return 0;
     } catch (const std::exception &error) {
         std::fprintf(stderr, "%s: %s\n", program.name.c_str(), error.what());

@@ -19,7 +19,7 @@ public:
             boxes[i] = bounds(static_cast<uint32_t>(i));
         nodes_.reserve(2 * count + 1);
         nodes_.emplace_back();
-        split(0, 0, static_cast<uint32_t>(count), boxes);
+        split(0, 0, static_cast<uint32_t>(count), 0, boxes);
     }
 
     bool closest(const Ray &ray, Hit &hit) const override
@@ -83,15 +83,18 @@ private:
         return box;
     }
 
-    // The surface area heuristic over 16 bins of the longest axis of the centres.
-    void split(uint32_t index, uint32_t begin, uint32_t end, const std::vector<Box> &boxes)
+    static Vector center(const Box &box) { return 0.5f * (box.low + box.high); }
+
+    // By the surface area heuristic. It can cut one off at a time: deep down nodes are halved, so that the depth is
+    // bounded, and with it the stack of traverse(): 2^32 primitives are leaves after 31 halvings.
+    static constexpr uint32_t heuristic_depth = 60, most_depth = heuristic_depth + 31;
+
+    void split(uint32_t index, uint32_t begin, uint32_t end, uint32_t depth, const std::vector<Box> &boxes)
     {
-        constexpr int bins = 16;
         Box box, centers;
-        auto center = [&](uint32_t i) { return 0.5f * (boxes[i].low + boxes[i].high); };
         for (uint32_t i = begin; i < end; ++i) {
             box.add(boxes[order_[i]]);
-            centers.add({center(order_[i]), center(order_[i])});
+            centers.add({center(boxes[order_[i]]), center(boxes[order_[i]])});
         }
         nodes_[index].box = box;
         Vector extent = centers.high - centers.low;
@@ -102,8 +105,23 @@ private:
             nodes_[index].count = count;
             return;
         }
+        const uint32_t cut = depth < heuristic_depth
+                                 ? cheapest_cut(begin, end, axis, centers.low[axis], extent[axis], boxes)
+                                 : begin + count / 2;
+        uint32_t child = static_cast<uint32_t>(nodes_.size());
+        nodes_.resize(child + 2);
+        nodes_[index].first = child;
+        split(child, begin, cut, depth + 1, boxes);
+        split(child + 1, cut, end, depth + 1, boxes);
+    }
+
+    // Over 16 bins along an axis on which the centres lie from `low` to `low + extent`. Parts the entries.
+    uint32_t cheapest_cut(uint32_t begin, uint32_t end, int axis, float low, float extent,
+                          const std::vector<Box> &boxes)
+    {
+        constexpr int bins = 16;
         auto bin = [&](uint32_t i) {
-            return std::min(bins - 1, static_cast<int>((center(i)[axis] - centers.low[axis]) / extent[axis] * bins));
+            return std::min(bins - 1, static_cast<int>((center(boxes[i])[axis] - low) / extent * bins));
         };
         Box bin_box[bins];
         uint32_t bin_count[bins] = {};
@@ -130,19 +148,14 @@ private:
         }
         auto middle =
             std::partition(order_.begin() + begin, order_.begin() + end, [&](uint32_t i) { return bin(i) < best; });
-        uint32_t cut = static_cast<uint32_t>(middle - order_.begin());
-        uint32_t child = static_cast<uint32_t>(nodes_.size());
-        nodes_.resize(child + 2);
-        nodes_[index].first = child;
-        split(child, begin, cut, boxes);
-        split(child + 1, cut, end, boxes);
+        return static_cast<uint32_t>(middle - order_.begin());
     }
 
     // With `any`, stops at the first hit nearer than best.distance.
     bool traverse(const Ray &ray, Candidate &best, bool any) const
     {
         Vector inverse{1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z};
-        uint32_t stack[64];
+        uint32_t stack[most_depth + 1]; // a sibling of each node on the way, and both children of the last
         int top = 0;
         if (!order_.empty()) // else the root is no leaf, and has no children
             stack[top++] = 0;

@@ -78,7 +78,8 @@ private:
         }
     }
 
-    // What a sample adds to the estimate: w f / (n p), nf_mis_optimal_contribution() for this alpha.
+    // What a sample adds to the estimate: w f / (n p). nf_mis_optimal_contribution() says the same for any number of
+    // techniques and checks its arguments, which takes some 70 ns: more than all else here for the balance heuristic.
     static float contribution(const Drawn &drawn, uint32_t technique, size_t n, const float *alpha, size_t channel)
     {
         if (!(drawn.pdf[technique] > 0))

@@ -4,7 +4,7 @@
 #include "estimators.hpp"
 #include "mis_estimators.hpp"
 #include "filter.hpp"
-#include "program.hpp"
+#include "scene.hpp"
 #include "tile_sampler.hpp"
 #include <cstdio>
 #include <cstdlib>
@@ -61,7 +61,7 @@ inline void print_usage(FILE *to, const Program &program)
         "--statistics writes PREFIX.ESTIMATOR.mean.pfm and PREFIX.ESTIMATOR.mse.pfm over all seeds instead: the mean "
         "image, and\n"
         "the mean squared error of each pixel and channel, (I - A)(I - B) for two independent halves of a reference.\n"
-        "--accumulate: rows get passes of N samples (a multiple of 4), one after the other, into accumulators.\n"
+        "--accumulate: rows get passes of N samples, one after the other, into accumulators.\n"
         "--bounces: how many reflections paths have, instead of as many as the scene says.\n"
         "--mis: direct light by two techniques, a half of the samples each: light sampling and direction sampling.\n"
         "--scramble: tiles are shifted by the seed instead of placed by it: exactly unbiased, and not as good.\n"
@@ -167,7 +167,7 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
         else if (name == "--threads")
             options.threads = number(1, 256);
         else if (name == "--seed")
-            options.seed = parse_number(name, value, 0, ~uint64_t{0} >> 1);
+            options.seed = parse_number(name, value, 0, key_seeds - 1);
         else if (name == "--sampler")
             options.sampler = value;
         else if (name == "--tile")
@@ -175,7 +175,7 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
         else if (name == "--table")
             options.table = value;
         else if (name == "--frame")
-            options.frame = number(0, 1 << 20);
+            options.frame = number(0, 1 << 20); // below key_frames
         else if (name == "--filter")
             options.filter = parse_filter(value);
         else if (name == "--output")
@@ -201,6 +201,10 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
         else
             throw std::runtime_error("unknown option `" + name + "`; --help lists them");
     }
+    if (options.seed + options.seeds > key_seeds)
+        throw std::runtime_error("--seeds " + std::to_string(options.seeds) + " from --seed " +
+                                 std::to_string(options.seed) + " on go beyond the last, " +
+                                 std::to_string(key_seeds - 1));
     const std::filesystem::path folder = std::filesystem::path(options.output).parent_path();
     if (!folder.empty() && !std::filesystem::is_directory(folder))
         throw std::runtime_error("--output " + options.output + ": there is no folder " + folder.string() +
@@ -218,9 +222,6 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
             " is not for --mis: that is direct light, and regresses the two numbers of each technique");
     if (options.accumulate && options.reference)
         throw std::runtime_error("--reference does without --accumulate");
-    // Sample i of an accumulator is in its fold i mod 4, whichever thread adds it.
-    if (options.accumulate % 4)
-        throw std::runtime_error("--accumulate takes a multiple of 4, not " + std::to_string(options.accumulate));
     return true;
 }
 

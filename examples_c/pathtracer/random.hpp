@@ -38,6 +38,9 @@ private:
     uint64_t state_;
 };
 
+// Of a pixel's key: beyond these numbers, seeds and frames would have the points of others.
+constexpr uint64_t key_seeds = uint64_t{1} << 40, key_frames = uint64_t{1} << 24;
+
 inline uint64_t pixel_key(uint64_t seed, uint32_t frame, uint32_t x, uint32_t y)
 {
     return mix(mix(seed + golden + (uint64_t{frame} << 40)) ^ (uint64_t{y} << 32 | x));

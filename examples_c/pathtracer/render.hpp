@@ -1,4 +1,6 @@
-// Renders a scene with several estimators at once, bucket by bucket, and measures where the time goes.
+// Renders a scene with several estimators at once, bucket by bucket, and measures where the time goes. Fits that pixels
+// share end at a bucket's border: each bucket is an image of its own. A renderer that keeps the samples of the buckets
+// around has the windows whole, by nf_cv_image's `given` and `wanted`: see ../strips.cpp.
 #pragma once
 
 #include "estimators.hpp"

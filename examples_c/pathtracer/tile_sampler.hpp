@@ -124,11 +124,30 @@ template <class S> void draw_groups(const S &sampler, const std::vector<Group> &
     }
 }
 
-// The library's own: nothing to choose. Another seed is another frame.
+// noisefloor's samplers know frames alone. A seed is a block of them, so many for each frame of a tile; frames are
+// numbers of 32 bits, and have room for so many seeds. Seed 1 begins at frame 0.
+constexpr uint32_t frames_of_seed = 4096;
+
+// Throws where a frame would be that of another seed.
+inline uint32_t frame_of(const SamplerSetup &setup, uint32_t tile_frames)
+{
+    const uint64_t block = uint64_t{frames_of_seed} * tile_frames, seeds = (uint64_t{1} << 32) / block;
+    auto refuse = [](const char *what, uint64_t number, uint64_t most) {
+        throw std::runtime_error(std::string(what) + " " + std::to_string(number) + " is beyond " +
+                                 std::to_string(most) + ", the last with points of its own from this sampler");
+    };
+    if (setup.seed >= seeds)
+        refuse("seed", setup.seed, seeds - 1);
+    if (setup.frame >= block)
+        refuse("frame", setup.frame, block - 1);
+    return setup.frame + static_cast<uint32_t>((setup.seed - 1) * block);
+}
+
+// The library's own: nothing to choose.
 class DefaultSampler final : public Sampler {
 public:
     explicit DefaultSampler(const SamplerSetup &setup)
-        : setup_(setup), frame_(setup.frame + static_cast<uint32_t>(setup.seed - 1) * 4096),
+        : setup_(setup), frame_(frame_of(setup, 1)),
           scramble_(setup.scramble ? static_cast<uint32_t>(mix(setup.seed)) | 1 : 0), groups_(group(setup.domains, 4))
     {
     }
@@ -158,7 +177,7 @@ public:
         if (setup.scramble)
             scramble_ = static_cast<uint32_t>(mix(setup.seed)) | 1;
         else
-            frame_ += static_cast<uint32_t>(setup.seed - 1) * 4096 * tile_->view().frames;
+            frame_ = frame_of(setup, tile_->view().frames);
     }
 
     void points(uint32_t x, uint32_t y, float *u) const override { range(x, y, 0, setup_.samples, u); }

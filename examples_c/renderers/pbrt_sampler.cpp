@@ -76,6 +76,8 @@ int main()
 {
     try {
         run();
+        if (std::fflush(stdout) != 0 || std::ferror(stdout))
+            throw std::runtime_error("standard output cannot be written");
     } catch (const std::exception &error) {
         std::fprintf(stderr, "pbrt_sampler: %s\n", error.what());
         return 1;

@@ -1,4 +1,4 @@
-// What both programs render: a ball on a floor, seen from above, under two lamps. No acceleration structure, no
+// What pbrt_sampler.cpp renders: a ball on a floor, seen from above, under two lamps. No acceleration structure, no
 // material.
 #pragma once
 

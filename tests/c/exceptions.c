@@ -19,6 +19,24 @@
 
 static nf_rng rng;
 
+/* Calls, and how many of them were not refused: a refusal says nothing. */
+static int calls, accepted;
+
+static void count(nf_status status)
+{
+    ++calls;
+    accepted += status == NF_OK;
+}
+
+/* At least so many percent of a family's calls must have done something. */
+static void check_accepted(const char *family, int percent)
+{
+    if (100 * accepted < percent * calls)
+        fprintf(stderr, "%s: of %d calls %d were accepted, fewer than %d %%\n", family, calls, accepted, percent);
+    CHECK(calls > 0 && 100 * accepted >= percent * calls);
+    calls = accepted = 0;
+}
+
 static uint32_t below(uint32_t bound) { return nf_rng_next(&rng) % bound; }
 
 /* The call may refuse, but quietly. `values` says what it was given. */
@@ -110,11 +128,11 @@ static void control_variates(void)
             controls[i] = size * u[i * config.dims];
         work = workspace_new(nf_cv_workspace_size(&config, n));
         feclearexcept(FE_ALL_EXCEPT);
-        estimate_controlled(&config, u, f, controls, &integral, n, work.start, work.bytes, &out);
+        count(estimate_controlled(&config, u, f, controls, &integral, n, work.start, work.bytes, &out));
         check_quiet("nf_cv_estimate", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
         steps.optimizer = below(2) ? NF_OPTIMIZER_ADAM : NF_OPTIMIZER_MOMENTUM;
         feclearexcept(FE_ALL_EXCEPT);
-        descend(&config, u, f, n, &steps, coefficients, work.start, work.bytes, &out);
+        count(descend(&config, u, f, n, &steps, coefficients, work.start, work.bytes, &out));
         check_quiet("nf_cv_gradient_descent", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
         memory_free(&work);
         state = memory_new(nf_cv_accumulator_size(&config, NULL));
@@ -126,11 +144,11 @@ static void control_variates(void)
             nf_cv_samples samples = samples_of(u, f, n);
             samples.controls = controls;
             samples.control_integrals = &integral;
-            nf_cv_accumulator_add(accumulator, &samples);
+            count(nf_cv_accumulator_add(accumulator, &samples));
             samples.n = n / 2 + 1 < n ? n / 2 + 1 : n;
-            nf_cv_accumulator_add(other, &samples);
-            nf_cv_accumulator_merge(accumulator, other);
-            nf_cv_accumulator_estimate(accumulator, work.start, work.bytes, &out);
+            count(nf_cv_accumulator_add(other, &samples));
+            count(nf_cv_accumulator_merge(accumulator, other));
+            count(nf_cv_accumulator_estimate(accumulator, work.start, work.bytes, &out));
             check_quiet("nf_cv_accumulator", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
         }
         memory_free(&work);
@@ -183,7 +201,7 @@ static void images(void)
         for (i = 0; i < 2; ++i) {
             work = workspace_new(nf_cv_image_workspace_size(&config, &image, &samples));
             feclearexcept(FE_ALL_EXCEPT);
-            nf_cv_image_estimate(&config, &image, &samples, work.start, work.bytes, out);
+            count(nf_cv_image_estimate(&config, &image, &samples, work.start, work.bytes, out));
             check_quiet("nf_cv_image_estimate", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
             memory_free(&work);
             memset(&image, 0, sizeof image);
@@ -211,13 +229,13 @@ static void tables(void)
             importance[i] = fabsf(importance[i]);
         feclearexcept(FE_ALL_EXCEPT);
         if (nf_table_init(&table, work.start, work.bytes, items, below(3) ? importance : NULL) == NF_OK) {
-            nf_table_draw(&table, &rng, batch, index, weight);
-            nf_table_draw_stratified(&table, &rng, batch, index, weight);
-            nf_table_draw_distinct(&table, &rng, batch, index, weight);
-            nf_table_update(&table, index, importance, batch, 0.3f);
+            count(nf_table_draw(&table, &rng, batch, index, weight));
+            count(nf_table_draw_stratified(&table, &rng, batch, index, weight));
+            count(nf_table_draw_distinct(&table, &rng, batch, index, weight));
+            count(nf_table_update(&table, index, importance, batch, 0.3f));
             table.uniform_fraction = 0.1f;
-            nf_table_draw(&table, &rng, batch, index, weight);
-            nf_table_probabilities(&table, index, 1, 1, weight);
+            count(nf_table_draw(&table, &rng, batch, index, weight));
+            count(nf_table_probabilities(&table, index, 1, 1, weight));
         }
         check_quiet("nf_table", kind_names[kind], (int)items, (int)batch, 0);
         memory_free(&work);
@@ -235,10 +253,10 @@ static void importances(void)
         fill_values(kind, values, 1, others, 10, 1);
         fill_values(kind, others, 1, values, 10, 1);
         feclearexcept(FE_ALL_EXCEPT);
-        nf_importance_cross_entropy(values, &label, 1, 10, &norm, &loss, gradient);
-        nf_importance_squared_error(values, others, 1, 10, &norm);
-        nf_importance_gradient(values, 1, 10, NF_NODES_NORM, 1, &norm);
-        nf_importance_gradient(gradient, 1, 10, NF_NODES_SIGN, 2, nodes);
+        count(nf_importance_cross_entropy(values, &label, 1, 10, &norm, &loss, gradient));
+        count(nf_importance_squared_error(values, others, 1, 10, &norm));
+        count(nf_importance_gradient(values, 1, 10, NF_NODES_NORM, 1, &norm));
+        count(nf_importance_gradient(gradient, 1, 10, NF_NODES_SIGN, 2, nodes));
         check_quiet("nf_importance", kind_names[kind], 0, 0, 0);
     }
 }
@@ -264,25 +282,25 @@ static void weights(void)
         for (i = 0; i < 12; ++i)
             pdf[i] = fabsf(pdf[i]);
         feclearexcept(FE_ALL_EXCEPT);
-        nf_mis_weight(NF_MIS_BALANCE, 0.0f, pdf, counts, 3, 0, weight);
-        nf_mis_weight(NF_MIS_POWER, 2.0f, pdf, counts, 3, 0, weight);
-        nf_mis_weight(NF_MIS_CUTOFF, 0.1f, pdf, counts, 3, 0, weight);
-        nf_mis_weight(NF_MIS_MAXIMUM, 0.0f, pdf, counts, 3, 0, weight);
+        count(nf_mis_weight(NF_MIS_BALANCE, 0.0f, pdf, counts, 3, 0, weight));
+        count(nf_mis_weight(NF_MIS_POWER, 2.0f, pdf, counts, 3, 0, weight));
+        count(nf_mis_weight(NF_MIS_CUTOFF, 0.1f, pdf, counts, 3, 0, weight));
+        count(nf_mis_weight(NF_MIS_MAXIMUM, 0.0f, pdf, counts, 3, 0, weight));
         check_quiet("nf_mis", kind_names[kind], 0, 0, 0);
         if (nf_omis_init(work.start, work.bytes, 3, 1, counts, &omis) == NF_OK) {
             for (i = 0; i < 4; ++i)
-                nf_omis_add(omis, technique[i], pdf + 3 * i, value + i);
-            nf_omis_solve(omis, solver, 0.0f, out, NULL);
-            nf_omis_solve(omis, solver, 0.0f, NULL, alpha);
-            nf_omis_next_batch(omis, solver, 0.0f, 0.5f);
+                count(nf_omis_add(omis, technique[i], pdf + 3 * i, value + i));
+            count(nf_omis_solve(omis, solver, 0.0f, out, NULL));
+            count(nf_omis_solve(omis, solver, 0.0f, NULL, alpha));
+            count(nf_omis_next_batch(omis, solver, 0.0f, 0.5f));
         }
         check_quiet("nf_omis", kind_names[kind], (int)solver, 0, 0);
-        nf_mis_optimal_contribution(pdf, counts, 3, 0, alpha, value[0], weight);
+        count(nf_mis_optimal_contribution(pdf, counts, 3, 0, alpha, value[0], weight));
         check_quiet("nf_mis_optimal", kind_names[kind], (int)solver, 0, 0);
-        nf_omis_weights(solver, 0.0f, 3, 500, pdf, technique, 4, weight);
+        count(nf_omis_weights(solver, 0.0f, 3, 500, pdf, technique, 4, weight));
         check_quiet("nf_omis_weights", kind_names[kind], (int)solver, 0, 0);
         if (nf_gradient_init(gradients.start, gradients.bytes, 3, 3, &state) == NF_OK)
-            nf_gradient_estimate(state, solver, 0.0f, 0.5f, 500, pdf, technique, gradient, 4, out);
+            count(nf_gradient_estimate(state, solver, 0.0f, 0.5f, 500, pdf, technique, gradient, 4, out));
         check_quiet("nf_gradient", kind_names[kind], (int)solver, 0, 0);
         memory_free(&work);
         memory_free(&gradients);
@@ -293,9 +311,14 @@ int main(void)
 {
     nf_rng_seed(&rng, 320);
     control_variates();
+    check_accepted("control variates", 60);
     images();
+    check_accepted("images", 30);
     tables();
+    check_accepted("tables", 95);
     importances();
+    check_accepted("importances", 95);
     weights();
+    check_accepted("weights", 70);
     return report("exceptions");
 }

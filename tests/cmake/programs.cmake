@@ -47,7 +47,7 @@ endforeach()
 add_program(shards shards ../examples_c/shards.c ${fast})
 add_check(shards shards shards)
 
-add_python(documents code_in_docs documents.py "${CMAKE_C_COMPILER}")
+add_python(documents code_in_docs documents.py "${CMAKE_C_COMPILER}" "${CMAKE_CXX_COMPILER}")
 add_custom_target(documents)
 
 # The library as its users have it: installed, or a part of their project.
@@ -58,7 +58,6 @@ foreach(name IN ITEMS projects examples)
 endforeach()
 
 # The path tracer: what it lists, what it promises of its options, what it refuses; and its parts one by one.
-find_package(Threads REQUIRED)
 link_libraries(Threads::Threads)
 add_program(pathtracer pathtracer ../examples_c/pathtracer.cpp ${fast})
 add_python(pathtracer scenes_and_options path_tracer.py "$<TARGET_FILE:pathtracer>")

@@ -12,8 +12,10 @@
 
 #include "pathtracer/scene_integrand.hpp"
 
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 
 namespace {
@@ -44,12 +46,13 @@ void write(const demo::SceneIntegrand &integrand, uint32_t first, const std::str
             u[0] = (static_cast<float>(i) + .5f) / cells;
             u[1] = (static_cast<float>(j) + .5f) / cells;
         }
-    std::FILE *file = std::fopen(path.c_str(), "wb");
+    // Under its name when it is whole, or not at all.
+    const std::string partial = path + ".partial";
+    std::FILE *file = std::fopen(partial.c_str(), "wb");
     if (!file)
-        throw std::runtime_error("cannot write " + path);
-    std::fprintf(file, "noisefloor-scene %u %u %u\n", kept, kept, cells);
+        throw std::runtime_error("cannot create " + partial + ": " + std::strerror(errno));
+    bool written = std::fprintf(file, "noisefloor-scene %u %u %u\n", kept, kept, cells) > 0;
     const uint32_t corner = (picture - kept) / 2;
-    bool written = true;
     for (uint32_t y = corner; y < corner + kept; ++y)
         for (uint32_t x = corner; x < corner + kept; ++x) {
             integrand.evaluate(x, y, values.size(), numbers.data(), colors.data(), nullptr, nullptr);
@@ -57,8 +60,11 @@ void write(const demo::SceneIntegrand &integrand, uint32_t first, const std::str
                 values[i] = .2126f * colors[3 * i] + .7152f * colors[3 * i + 1] + .0722f * colors[3 * i + 2];
             written = written && std::fwrite(values.data(), sizeof(float), values.size(), file) == values.size();
         }
-    if (std::fclose(file) || !written)
-        throw std::runtime_error("cannot write all of " + path);
+    written = std::fclose(file) == 0 && written;
+    if (written && std::rename(partial.c_str(), path.c_str()) == 0)
+        return;
+    std::remove(partial.c_str());
+    throw std::runtime_error("cannot write all of " + path);
 }
 
 void table(const Choice &choice, const std::string &folder)

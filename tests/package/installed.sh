@@ -111,7 +111,7 @@ for kind in static shared; do
     quiet cmake --install "$prefix build"
     [ -e "$prefix/lib/$there" ] || fail "an installation of the $kind library alone has no $there"
     [ ! -e "$prefix/lib/$absent" ] || fail "an installation of the $kind library alone has $absent"
-    project "$package/one_kind" "$prefix project" "-DCMAKE_PREFIX_PATH=$prefix" -DKIND=$kind
+    project "$package" "$prefix project" "-DCMAKE_PREFIX_PATH=$prefix" -DKIND=$kind
     linked_as_named "$prefix project/app_$kind"
     # The file is the same for both, and the linker takes what there is.
     pkg_config "$prefix/lib" "${CC:-cc}" app.c "$work/pkg_config_only_$kind" '' ''

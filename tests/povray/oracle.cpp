@@ -69,6 +69,7 @@ int main(int argc, char **argv)
 {
     try {
         povray::run(argc, argv);
+        demo::finish_output();
         return 0;
     } catch (const std::exception &error) {
         std::fprintf(stderr, "oracle: %s\n", error.what());

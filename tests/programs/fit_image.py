@@ -50,6 +50,7 @@ def refusals(program):
     """Pictures and options that are wrong: an error that says why."""
     arguments = write(program, "P6\n# a comment\n17 16\n255\n", 3 * 17 * 16)
     program.refuses("--batch", *arguments, "--batch", "512")
+    program.refuses("above 17, not 17", *arguments, "--variance", "--steps", "17")
     program.refuses("nowhere/nothing", *arguments, "--steps", "2", "--output", "nowhere/nothing")
     for header, length, word in [
         ("", 0, "P6"),

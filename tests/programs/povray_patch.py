@@ -24,6 +24,7 @@ REFUSED = [
     ("_ESTIMATOR=slices", ["NOISEFLOOR_ESTIMATOR=slices", "recommended, accumulator, mc, robust"]),
     ("_SAMPLER=table", ["NOISEFLOOR_SAMPLER=table", "tile, sobol, random, grid"]),
     ("_TILE=nonsense", ["`nonsense`", "128_16SPP_2D"]),
+    ("_SEED=4096", ["NOISEFLOOR_SEED=4096", "0 to 4095"]),
     ("_SPP=many", ["NOISEFLOOR_SPP=many", "1 to 65536"]),
     ("_TILES=128_1SPP_2D", ["NOISEFLOOR_TILES", "README.md"]),
 ]

@@ -34,7 +34,8 @@ struct Settings {
         s.tile = text("NOISEFLOOR_TILE", s.tile);
         s.estimator = text("NOISEFLOOR_ESTIMATOR", s.estimator);
         s.order = number("NOISEFLOOR_ORDER", s.order, 0, 7);
-        s.seed = number("NOISEFLOOR_SEED", s.seed, 0, UINT32_MAX);
+        // Frames of a sampler: no more than every tile has.
+        s.seed = number("NOISEFLOOR_SEED", s.seed, 0, demo::frames_of_seed - 1);
         s.box = choose("NOISEFLOOR_PIXEL", {"box", "center"}) == 0;
         s.moves_lights = choose("NOISEFLOOR_LIGHT", {"whole", "shadow"}) == 0;
         refuse_others();
