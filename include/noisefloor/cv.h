@@ -110,16 +110,13 @@ uint32_t nf_cv_terms(const nf_cv_config *config);
 // An estimate of an integral over primary sample space.
 typedef struct nf_estimate {
     float mean[4]; // The integral, for each channel; zero for channels that are not there.
-    // An estimate of each mean's standard error; infinite if one sample is all there is, and for a luminance ratio of
-    // samples whose luminances cancel.
-    float std_error[4];
+    float std_error[4]; // Each mean's standard error; infinite of one sample, or where a ratio's luminances cancel.
     uint32_t samples; // Samples used.
     float gain; // Estimated variance relative to the plain mean's, averaged over the channels; 1 is no gain.
 } nf_estimate;
 
-// Bytes of workspace for n samples of each integral, or fewer: never less for more samples. 0 for a configuration that
-// nf_check() refuses, for options that exclude each other, for more samples than the solver takes, or where no memory
-// could be large enough.
+// Bytes of workspace for n samples of each integral, or fewer; never less for more. 0 where nf_check() refuses,
+// options exclude each other, the solver takes fewer samples, or no memory could be large enough.
 size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
 // Estimates `integrals` integrals from `samples->n` samples of each, apart from each other: out[integrals]. Nothing of

@@ -14,9 +14,8 @@ pub(super) type Best = f64;
 #[cfg(not(feature = "double"))]
 pub(super) type Best = f32;
 
-/// Bytes of workspace for n samples of each integral, or fewer: never less for more samples. 0 for a configuration that
-/// nf_check() refuses, for options that exclude each other, for more samples than the solver takes, or where no memory
-/// could be large enough.
+/// Bytes of workspace for n samples of each integral, or fewer; never less for more. 0 where nf_check() refuses,
+/// options exclude each other, the solver takes fewer samples, or no memory could be large enough.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_workspace_size(config: *const nf_cv_config, n: usize) -> usize {
     let len = || {

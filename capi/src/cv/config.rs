@@ -112,8 +112,7 @@ pub struct nf_cv_config {
 pub struct nf_estimate {
     /// The integral, for each channel; zero for channels that are not there.
     pub mean: [f32; 4],
-    /// An estimate of each mean's standard error; infinite if one sample is all there is, and for a luminance ratio of
-    /// samples whose luminances cancel.
+    /// Each mean's standard error; infinite of one sample, or where a ratio's luminances cancel.
     pub std_error: [f32; 4],
     /// Samples used.
     pub samples: u32,

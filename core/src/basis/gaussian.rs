@@ -1,6 +1,6 @@
 //! A mixture of isotropic Gaussians with centres that cover the cube evenly.
 
-use super::{MAX_DIMS, MAX_TERMS};
+use super::shape::{MAX_DIMS, MAX_TERMS};
 use crate::lanes::Lanes;
 use crate::real::Real;
 use heapless::Vec;

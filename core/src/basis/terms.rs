@@ -1,6 +1,7 @@
 //! Multi-indices of total degree, as a program that computes each product from earlier ones.
 
-use super::{Family, MAX_DIMS, MAX_ORDER, MAX_TERMS, functions};
+use super::functions::{self, Family};
+use super::shape::{MAX_DIMS, MAX_ORDER, MAX_TERMS};
 use crate::lanes::{self, Lanes};
 use crate::real::Real;
 use crate::rows::at;

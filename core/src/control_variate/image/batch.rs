@@ -6,10 +6,10 @@
 use super::super::config::Config;
 use super::call::{Call, Layout};
 use super::groups::{Group, Groups, Place};
-use super::pixels::Image;
+use super::pixels::{Image, MAX_AXES};
 use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Sums, minus, only, product, zip_four};
 use super::sliced::Sliced;
-use super::terms::{MAX_AXES, Terms};
+use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
 use crate::matrix::{at, copy, from_mut, halves_mut, row_at, row_at_mut};

@@ -1,10 +1,11 @@
 //! The pixels of an image, and which of them share fits.
 
-use super::terms::MAX_AXES;
 use crate::control_variate::Config;
 use crate::error::Error;
 use core::ffi::CStr;
 
+/// The pixels' axes: x, y and frames.
+pub(super) const MAX_AXES: usize = 3;
 /// What is said of too many pixels.
 const MOST: &CStr = c"pixels must be at most 2^30 - 1, all frames together";
 

@@ -13,8 +13,6 @@ use heapless::Vec;
 
 /// The most candidates: one for each degree, one with every slice's own functions, one with all columns.
 pub(super) const MAX_FITS: usize = MAX_ORDER + 2;
-/// The pixels' axes: x, y and frames.
-pub(super) const MAX_AXES: usize = 3;
 /// The highest degree of the functions whose coefficients may change across a group.
 const MOVING_DEGREE: usize = 2;
 /// No products that make more columns than this.
