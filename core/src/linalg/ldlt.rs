@@ -168,11 +168,18 @@ pub(crate) fn forward_one<R: Real>(factors: &[Lanes<R>], first: usize, x: &mut [
 /// X := A^-1 X for eight systems side by side.
 pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
     forward_one(factors, 0, x);
+    divide_each(factors, x);
+    backward_each(factors, x);
+}
+
+/// X := D^-1 X for eight systems side by side.
+#[inline(always)]
+pub(crate) fn divide_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
     let pivots = Triangle::new(factors, x.len());
     for (j, x_j) in x.iter_mut().enumerate() {
         *x_j = lanes::zip(x_j, &pivots.diagonal(j), |x_j, inverse| x_j * inverse);
+        lanes::keep_together();
     }
-    backward_each(factors, x);
 }
 
 /// X := L'^-1 X for eight systems side by side.

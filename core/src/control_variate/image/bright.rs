@@ -106,7 +106,8 @@ pub(super) fn limits(batch: &Batch<'_>, channel: usize, judges: Colours, trust: 
         let is_beyond = |least: f32, most: f32| least < near[0] || most > near[1];
         let is_far = is_beyond(-lowest.below(0, l), highest.below(0, l));
         let are_others = is_beyond(-least.below(0, l), most.below(0, l));
-        if if trust[l] < DOUBT { are_others && !is_far } else { are_others || is_far } {
+        let is_explained = is_far && trust[l] < DOUBT;
+        if (is_far || are_others) && !is_explained {
             limits[l] = near;
         }
     }

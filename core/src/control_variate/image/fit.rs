@@ -43,7 +43,7 @@ pub(super) struct Fits<'a> {
     between: Sums<'a>,
     /// Of each value and candidate; where pixels have one sample those of the fixed columns alone.
     coefficients: &'a mut [Eight],
-    /// 1 / D.
+    /// 1 / D, in a row: every block needs it.
     pivots: &'a mut [Eight],
     /// D^-1 L^-1 of the fixed columns of the unit matrix.
     units: &'a mut [Eight],
@@ -174,15 +174,9 @@ impl<'a> Fits<'a> {
         for (j, pivot) in self.pivots.iter_mut().enumerate() {
             *pivot = diagonal(gram, j);
         }
-        let divide = |row: &mut [Eight], pivots: &[Eight]| {
-            for (out, pivot) in row.iter_mut().zip(pivots) {
-                *out = product(out, pivot);
-                lanes::keep_together();
-            }
-        };
         for side in rows_mut(sides, width) {
             ldlt::forward_one(gram, 0, side);
-            divide(side, self.pivots);
+            ldlt::divide_each(gram, side);
         }
         if call.n > 1 {
             for (side, coefficients) in rows(sides, width).zip(rows_mut(self.coefficients, self.count * width)) {
@@ -205,7 +199,7 @@ impl<'a> Fits<'a> {
                     }
                 });
             }
-            divide(unit, self.pivots);
+            ldlt::divide_each(gram, unit);
         }
     }
 

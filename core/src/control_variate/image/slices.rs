@@ -65,12 +65,6 @@ fn gather(out: &mut [Eight], of: &[&[Eight]; LANES]) {
     }
 }
 
-fn add(sums: &mut [Eight], index: usize, more: &Eight) {
-    if let Some(sum) = sums.get_mut(index) {
-        *sum = plus(sum, more);
-    }
-}
-
 /// Entry (i, k) of a symmetric matrix.
 fn symmetric(triangle: &[Eight], i: usize, k: usize) -> Eight {
     at(triangle, packed_len(i.max(k)) + i.min(k))
@@ -238,11 +232,12 @@ impl<'a> Apart<'a> {
                     *l = product(z, &diagonal(triangle, k));
                 }
                 if let Some(unit) = i.checked_sub(width + values) {
-                    for value in 0..values {
+                    for (value, trends) in rows_mut(self.trends, ends.len() * fixed).enumerate().take(values) {
                         let line = row_at(lines, own, width + value).iter().zip(&*solved);
                         let sum = line.fold(NONE, |sum, (l, z)| lanes::plus_product(sum, *l, *z));
-                        for fit in 0..ends.len() {
-                            add(self.trends, (value * ends.len() + fit) * fixed + unit, &sum);
+                        // All candidates have the same own columns: the first's has their sum.
+                        if let Some(trend) = trends.get_mut(unit) {
+                            *trend = plus(trend, &sum);
                         }
                     }
                 }
@@ -257,20 +252,22 @@ impl<'a> Apart<'a> {
             }
         }
         ldlt::factor_each(self.border, width);
-        let divide = |(j, out): (usize, &mut Eight)| *out = product(out, &diagonal(self.border, j));
         let (of_values, of_units) = halves_mut(self.sides, values * width);
         for side in rows_mut(of_values, width) {
             ldlt::forward_one(self.border, 0, side);
-            side.iter_mut().enumerate().for_each(divide);
+            ldlt::divide_each(self.border, side);
         }
         for (k, unit) in rows_mut(of_units, width).take(units).enumerate() {
             ldlt::forward_one(self.border, 0, unit);
-            for (value, side) in rows(of_values, width).enumerate() {
+            for (side, trends) in rows(of_values, width).zip(rows_mut(self.trends, ends.len() * fixed)) {
+                let own_sum = at(trends, k);
                 sums_to(ends, unit, side, |fit, sum| {
-                    add(self.trends, (value * ends.len() + fit) * fixed + k, &sum);
+                    if let Some(trend) = row_at_mut(trends, fixed, fit).get_mut(k) {
+                        *trend = plus(&own_sum, &sum);
+                    }
                 });
             }
-            unit.iter_mut().enumerate().for_each(divide);
+            ldlt::divide_each(self.border, unit);
         }
     }
 
