@@ -74,6 +74,12 @@ def on_film(film, mean, alpha):
     return film.develop()
 
 
+def _of_all(values, count):
+    """An integrator may say one thing of all samples."""
+    values = numpy.array(values)
+    return numpy.broadcast_to(values, (*values.shape[:-1], count))
+
+
 def _check(film, sampler, scene, inner, count):
     if not film.rfilter().is_box_filter() or film.sample_border():
         raise ValueError("noisefloor_fits: the film needs a box filter, and no sample_border")
@@ -124,17 +130,14 @@ def kind():
             corner = mi.Point2f(pixel % width, pixel // width) + offset
             ray, weight = _rays(sensor, corner + sampler.next_2d(), sampler)
             radiance, valid, _ = self.inner.sample(scene, sampler, ray, sensor.get_medium())
-            # An integrator may say one thing of all samples.
-            count = width * height * spp
-            value = numpy.array(weight * radiance)
-            value = numpy.array(numpy.broadcast_to(value, (*value.shape[:-1], count))).T.reshape(height, width, spp, -1)
+            value = _of_all(weight * radiance, width * height * spp).T.reshape(height, width, spp, -1)
             # Others would take the whole picture with them.
             wrong = ~numpy.isfinite(value).all(-1)
             if wrong.any():
                 mi.Log(mi.LogLevel.Warn, f"noisefloor_fits: {wrong.sum()} samples were not finite, and count as 0")
-                value[wrong] = 0
-            valid = numpy.broadcast_to(numpy.array(valid), count)
-            return value, valid.reshape(height, width, spp).mean(-1, dtype=numpy.float32)
+                value = numpy.where(wrong[..., None], numpy.float32(0), value)
+            valid = _of_all(valid, width * height * spp).reshape(height, width, spp)
+            return value, valid.mean(-1, dtype=numpy.float32)
 
         def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
             sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
