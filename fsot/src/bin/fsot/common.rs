@@ -129,8 +129,8 @@ impl Common {
         self.named_checkpoint().unwrap_or_else(unnamed)
     }
 
-    /// The same, if it does not depend on the problem.
-    fn named_checkpoint(&self) -> Option<PathBuf> {
+    /// The same, if it does not depend on the problem: [`check_outputs`](Self::check_outputs) has seen it.
+    pub(crate) fn named_checkpoint(&self) -> Option<PathBuf> {
         let beside = || (!output::is_stream(&self.out)).then(|| self.sibling(".checkpoint"));
         self.checkpoint.clone().or_else(beside)
     }

@@ -68,7 +68,9 @@ impl Run {
 pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serialize, common: &Common) -> Result<Run> {
     let problem = Problem::new(problem)?;
     let checkpoint = common.checkpoint(&problem);
-    output::check([checkpoint.as_path()], [])?;
+    if common.named_checkpoint().is_none() {
+        output::check([checkpoint.as_path()], [])?;
+    }
     let resumed = checkpoint::resume(&checkpoint, &problem, optimization)?;
     let watch = Watch::start()?;
     let mut progress = Progress::new(common, &*optimization);
