@@ -158,5 +158,6 @@ impl<R: Real> Summary<R> {
 
 /// As an `f32`: infinite if unknown or, as of values at the end of a narrow type's range, no number.
 pub(crate) fn standard_error(value: f64) -> f32 {
-    if value.is_finite() { saturate(value) } else { f32::INFINITY }
+    let near = saturate(value);
+    if value.is_finite() { near } else { f32::INFINITY }
 }

@@ -312,9 +312,11 @@ impl<'a> Batch<'a> {
                 let [low, high] = row_at(ranges, 2, channel) else { continue };
                 for (inside, (low, high)) in inside.iter().zip(low.iter().zip(high)) {
                     for l in 0..LANES {
+                        // Both sides of each choice are ready, so that there is nothing to jump over.
                         let most = Real::max(Real::abs(low[l]), Real::abs(high[l]));
-                        largest[l] = if inside[l] > 0.0 { Real::max(most, largest[l]) } else { largest[l] };
-                        first[l] = if inside[l] > 0.0 && first[l] == f32::INFINITY { low[l] } else { first[l] };
+                        let (most, low) = if inside[l] > 0.0 { (most, low[l]) } else { (0.0, f32::INFINITY) };
+                        largest[l] = Real::max(most, largest[l]);
+                        first[l] = if first[l] < f32::INFINITY { first[l] } else { low };
                     }
                     lanes::keep_together();
                 }

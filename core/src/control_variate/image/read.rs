@@ -150,7 +150,11 @@ impl Call<'_> {
         let (inputs, rest) = halves_mut(values, channels);
         for (channel, values) in inputs.iter_mut().enumerate() {
             let out = part_mut(values, row, samples.len());
-            self.put_rows(self.reader.inputs(), pixels, (self.n, samples.start), channel, out);
+            match row_at(batch.ranges, 2, block * channels + channel) {
+                // The survey has read it.
+                [only, _] if self.n == 1 => out.fill(only[slot % AT_ONCE]),
+                _ => self.put_rows(self.reader.inputs(), pixels, (self.n, samples.start), channel, out),
+            }
         }
         let [coefficients, integrals] =
             [&*batch.coefficients, &*batch.integrals].map(|all| row_at(all, channels, block));

@@ -193,7 +193,7 @@ impl Call<'_> {
     /// Of eight pixels.
     #[inline(always)]
     fn estimate(&self, pixel: usize, sums: &[Eight]) -> [Estimate; LANES] {
-        let samples = self.n.min(u32::MAX as usize) as u32;
+        let (samples, by_groups) = (self.n.min(u32::MAX as usize) as u32, self.error_is_the_groups());
         let mut out = [Estimate { mean: [0.0; 4], std_error: [0.0; 4], samples, gain: 1.0 }; LANES];
         let Some(([weight, error_weight, gain], each)) = sums.split_first_chunk() else { return out };
         // Without a weight all sums are zero.
@@ -219,23 +219,25 @@ impl Call<'_> {
                     variance[l] = (square[l] - total[l] * total[l] / n).max(0.0) / mean_divisor(n);
                 }
             }
-            let mut mean = plain;
-            let mut told = [f64::INFINITY; LANES];
-            for l in 0..LANES {
-                // A correction that left the type's range is none.
-                let is_corrected = correction[l].is_finite();
-                mean[l] = if is_corrected { plain[l] + correction[l] } else { plain[l] };
-                gain[l] = if is_corrected { gain[l] } else { 1.0 };
-                let has_error = error_weight[l] > 0.0 && is_corrected;
-                if has_error && self.error_is_the_groups() {
-                    told[l] = spread[l];
-                } else if self.n > 1 {
+            // A correction that left the type's range is none.
+            let (mut mean, mut told) = (plain, [f64::INFINITY; LANES]);
+            if self.n > 1 {
+                for l in 0..LANES {
+                    let is_corrected = correction[l].is_finite();
+                    let has_error = is_corrected & (error_weight[l] > 0.0);
                     let ratio = if has_error { spread[l] * spread[l] } else { 1.0 };
                     // A correction that the pixel's own samples make unlikely is an error.
                     let moved = if is_corrected { correction[l] * correction[l] } else { 0.0 };
-                    let unlikely = (moved - UNLIKELY * variance[l]).max(0.0);
-                    told[l] = libm::sqrt(ratio * variance[l] + unlikely);
+                    told[l] = ratio * variance[l] + (moved - UNLIKELY * variance[l]).max(0.0);
                 }
+                told = told.map(libm::sqrt);
+            }
+            for l in 0..LANES {
+                let is_corrected = correction[l].is_finite();
+                let has_error = is_corrected & (error_weight[l] > 0.0);
+                mean[l] = if is_corrected { plain[l] + correction[l] } else { plain[l] };
+                gain[l] = if is_corrected { gain[l] } else { 1.0 };
+                told[l] = if by_groups & has_error { spread[l] } else { told[l] };
             }
             let (mean, error) = (narrow(&mean, saturate), narrow(&told, standard_error));
             for l in 0..LANES {
