@@ -132,10 +132,10 @@ impl Call<'_> {
                     if !self.image.factors.is_empty() {
                         self.times_factors(window, &places, begin, channel, &mut both);
                     }
-                    // What cannot be added up is no number, and found at the end.
+                    // What cannot be added up is infinite, and found at the end.
                     *each = both.map(|values| {
                         lanes::zip(&near, &values, |near, value| {
-                            near * if Real::abs(value) < MOST { value } else { f32::NAN }
+                            near * if Real::abs(value) < MOST { value } else { f32::INFINITY }
                         })
                     });
                 }
@@ -224,8 +224,8 @@ impl Call<'_> {
             if self.n > 1 {
                 for l in 0..LANES {
                     let is_corrected = correction[l].is_finite();
-                    let has_error = is_corrected & (error_weight[l] > 0.0);
-                    let ratio = if has_error { spread[l] * spread[l] } else { 1.0 };
+                    let has_ratio = is_corrected & (error_weight[l] > 0.0) & !by_groups;
+                    let ratio = if has_ratio { spread[l] * spread[l] } else { 1.0 };
                     // A correction that the pixel's own samples make unlikely is an error.
                     let moved = if is_corrected { correction[l] * correction[l] } else { 0.0 };
                     told[l] = ratio * variance[l] + (moved - UNLIKELY * variance[l]).max(0.0);
