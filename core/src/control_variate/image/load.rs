@@ -3,8 +3,8 @@
 use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED, kept};
 use super::products::{
-    AT_ONCE, COLOURS, Eight, Four, NONE, Part, Rows, Sums, add_products, minus, only, plus, plus_four, times, total,
-    zip_four,
+    AT_ONCE, COLOURS, Eight, Four, NONE, Part, Rows, Sums, add_products, empty, minus, only, plus, plus_four, times,
+    total, zip_four,
 };
 use super::sliced::Sliced;
 use super::terms::Terms;
@@ -133,7 +133,7 @@ impl Batch<'_> {
         let inside = at(self.inside, block)[row % AT_ONCE];
         let is_full = inside == [1.0; LANES];
         deviations.sums.empty();
-        deviations.totals.iter_mut().for_each(|sum| *sum = NONE);
+        empty(deviations.totals);
         for begin in (0..call.n).step_by(AT_ONCE) {
             let count = AT_ONCE.min(call.n - begin);
             call.read(self, (block, row..row + 1), begin..begin + count, samples);

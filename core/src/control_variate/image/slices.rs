@@ -12,7 +12,7 @@
 
 use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED};
-use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, minus, only, plus, product, sums_to};
+use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, empty, minus, only, plus, product, sums_to};
 use super::several::Several;
 use super::terms::{SINGULAR, Terms, scale};
 use crate::arena::Arena;
@@ -181,17 +181,17 @@ impl<'a> Apart<'a> {
         // Where a pixel's own sample is left out afterwards, of which there is one less.
         let (left_out, units) = if batch.call.n == 1 { (1.0, fixed) } else { (0.0, 0) };
         let ends = part(&terms.ends, fits.start, fits.len());
-        self.trends.iter_mut().for_each(|sum| *sum = NONE);
+        empty(self.trends);
         let scale = scale(batch.call.config, &count.map(|count| count - left_out));
         for (j, penalty) in penalties.iter().enumerate().take(width) {
             let out = row_mut(self.border, j);
-            out.iter_mut().for_each(|out| *out = NONE);
+            empty(out);
             if let Some(out) = out.last_mut() {
                 *out = scale.map(|scale| scale * penalty);
             }
         }
         for (i, side) in rows_mut(self.sides, width).take(values + units).enumerate() {
-            side.iter_mut().for_each(|out| *out = NONE);
+            empty(side);
             if let Some(out) = i.checked_sub(values).and_then(|unit| side.get_mut(unit)) {
                 *out = [1.0; LANES];
             }
@@ -296,7 +296,7 @@ impl<'a> Apart<'a> {
             ldlt::backward_each(triangle, solved);
             let out = row_at_mut(coefficients, terms.columns(), slice);
             copy(out, shared);
-            first_mut(out, fixed).iter_mut().for_each(|out| *out = NONE);
+            empty(first_mut(out, fixed));
             for (j, value) in solved.iter().enumerate() {
                 if let Some(out) = out.get_mut(terms.source(j).0) {
                     *out = plus(out, value);

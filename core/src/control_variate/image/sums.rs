@@ -4,7 +4,7 @@ use super::super::config::{Config, Estimate};
 use super::super::result::{mean_divisor, saturate, standard_error};
 use super::call::{Call, Layout};
 use super::groups::{Groups, Place};
-use super::products::{Eight, NONE, product};
+use super::products::{Eight, NONE, empty, product};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES, Lanes};
 use crate::matrix::{self, from, halves_mut, row_at_mut};
@@ -76,7 +76,7 @@ impl<'a> Band<'a> {
     pub(super) fn new(call: &Call<'_>, rows: usize, arena: &mut Arena<'a, f32>) -> Self {
         let rows_of_frames = rows * call.windows.frames();
         let sums = arena.take_lanes(call.eights() * rows_of_frames * sums_len(call.config.channels));
-        sums.iter_mut().for_each(|sum| *sum = NONE);
+        empty(sums);
         Self { sums, rows }
     }
 }
@@ -171,14 +171,15 @@ impl Call<'_> {
     #[inline(always)]
     pub(super) fn write(&self, (frame, y): (usize, usize), band: &mut Band<'_>, out: &mut dyn FnMut(usize, Estimate)) {
         let (given, wanted) = (self.windows.given, self.windows.wanted);
-        let len = sums_len(self.config.channels);
+        let (len, samples) = (sums_len(self.config.channels), self.n.min(u32::MAX as usize) as u32);
         let row = frame * band.rows + y % band.rows.max(1);
         let sums = row_at_mut(band.sums, self.eights() * len, row);
         for (eight, sums) in rows_mut(sums, len).enumerate() {
             let column = given.x + eight * LANES;
             if y >= wanted.y && column < wanted.x + wanted.width && wanted.x < column + LANES {
                 let begin = (frame * wanted.height + y - wanted.y) * wanted.width;
-                let estimates = self.estimate(self.windows.number(column, y, frame), sums);
+                let mut estimates = [Estimate { mean: [0.0; 4], std_error: [0.0; 4], samples, gain: 1.0 }; LANES];
+                self.estimate(self.windows.number(column, y, frame), sums, &mut estimates);
                 for (lane, &estimate) in estimates.iter().enumerate() {
                     let x = (column + lane).wrapping_sub(wanted.x);
                     if x < wanted.width {
@@ -186,16 +187,15 @@ impl Call<'_> {
                     }
                 }
             }
-            sums.iter_mut().for_each(|sum| *sum = NONE);
+            empty(sums);
         }
     }
 
     /// Of eight pixels.
     #[inline(always)]
-    fn estimate(&self, pixel: usize, sums: &[Eight]) -> [Estimate; LANES] {
-        let (samples, by_groups) = (self.n.min(u32::MAX as usize) as u32, self.error_is_the_groups());
-        let mut out = [Estimate { mean: [0.0; 4], std_error: [0.0; 4], samples, gain: 1.0 }; LANES];
-        let Some(([weight, error_weight, gain], each)) = sums.split_first_chunk() else { return out };
+    fn estimate(&self, pixel: usize, sums: &[Eight], out: &mut [Estimate; LANES]) {
+        let Some(([weight, error_weight, gain], each)) = sums.split_first_chunk() else { return };
+        let by_groups = self.error_is_the_groups();
         // Without a weight all sums are zero.
         let [over, error_over] = [weight, error_weight].map(inverse);
         let gain = narrow(&lanes::zip(&wide(gain), &over, |gain, over| gain * over), |gain| gain as f32);
@@ -248,7 +248,6 @@ impl Call<'_> {
         for l in 0..LANES {
             out[l].gain = gain[l];
         }
-        out
     }
 
     /// A channel of a sample of each pixel, as it was given.
