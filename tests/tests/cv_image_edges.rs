@@ -186,6 +186,31 @@ fn every_form_is_finite() {
     }
 }
 
+/// Pixels in no order are worked on in eight parts, with a surface in one: they choose alike.
+#[test]
+fn parts_choose_as_one() {
+    let mut rng = SplitMix64::new(335);
+    let (n, pixels) = (4, 64);
+    let config = Config { edges: 1, ..Config::new(2, 0, 1) };
+    let surfaces = vec![0; pixels];
+    let mut errors = [[0.0; 2]; 2];
+    for _ in 0..100 {
+        let u = points(pixels * n, 2, &mut rng);
+        // Light that has an edge, and light that comes by chance.
+        for (errors, has_edge) in errors.iter_mut().zip([true, false]) {
+            let is_lit = |u: &[f32], chance: f64| if has_edge { u[0] < 0.5 } else { chance < 0.5 };
+            let f: Vec<f32> = u.chunks(2).map(|u| if is_lit(u, rng.uniform()) { 1.0 } else { 0.0 }).collect();
+            for (error, surfaces) in errors.iter_mut().zip([&[][..], &surfaces]) {
+                let of = Image { surfaces, ..Image::unordered(pixels) };
+                let all = image(&config, &of, Samples::new(&u, &f)).unwrap();
+                *error += all.iter().map(|pixel| f64::from(pixel.mean[0] - 0.5).powi(2)).sum::<f64>();
+            }
+        }
+    }
+    let [edge, chance] = errors.map(|[parts, one]| parts / one);
+    assert!((0.9..1.1).contains(&edge) && (0.995..1.005).contains(&chance), "{edge} {chance}");
+}
+
 /// Powers of two scale estimates, exactly.
 #[test]
 fn units_do_not_matter() {

@@ -279,13 +279,13 @@ impl<'a> Batch<'a> {
     }
 
     /// Keeps pixels beyond their group's limits out of all fits.
-    pub(super) fn leave_out<'l>(&mut self, limits: impl Fn(&Group) -> &'l [f32]) {
+    pub(super) fn leave_out(&mut self, groups: &Groups<'_>, turn: usize) {
         let channels = self.call.config.channels;
         self.leaves_out = true;
         for channel in 0..channels {
             let (mut lowest, mut highest) = (NONE, NONE);
             for (lane, group) in self.lanes.iter().enumerate() {
-                if let &[low, high] = row_at(limits(group), 2, channel) {
+                if let &[low, high] = row_at(groups.found(group).1, 2, turn * channels + channel) {
                     [lowest[lane % LANES], highest[lane % LANES]] = [low, high];
                 }
             }

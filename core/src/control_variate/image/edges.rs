@@ -9,7 +9,7 @@
 use super::batch::{Batch, MAX_FIXED, blocks};
 use super::call::{Call, Layout};
 use super::fit::Fits;
-use super::groups::{Groups, Place};
+use super::groups::Place;
 use super::products::{
     AT_ONCE, AT_ONCE_LANES, COLOURS, Colours, Eight, Four, NONE, Sums, add_products, combine, minus, only, plus,
     plus_four, product, times,
@@ -58,28 +58,16 @@ impl Layout<'_> {
 }
 
 impl Call<'_> {
-    /// Notes which groups have lit and dark samples.
-    pub(super) fn find_edges(&self, groups: &mut Groups<'_>) {
-        if !self.has_edges() {
-            return;
-        }
-        let channels = self.config.channels;
-        for index in 0..groups.count {
-            let group = groups.numbered(index);
-            let window = self.window(group.window);
-            let members = groups.members(&group);
-            let is_lit = |member: usize, sample: usize| {
-                let place = Place::read(at(members, member));
-                let pixel = self.pixel(window, place, member);
-                row_at(self.reader.inputs(), channels, pixel * self.n + sample).iter().any(|&value| value > 0.0)
-            };
-            let first = is_lit(0, 0);
-            let mut all = (0..group.len).flat_map(|member| (0..self.n).map(move |sample| (member, sample)));
-            let has_both = all.any(|(member, sample)| is_lit(member, sample) != first);
-            if has_both && group.len >= FEWEST_PIXELS {
-                groups.set_edges(index);
-            }
-        }
+    /// Whether a group, `members` of a window, has lit and dark samples, if edges are looked for.
+    pub(super) fn has_edge(&self, window: usize, members: &[f32], len: usize) -> bool {
+        let (window, channels) = (self.window(window), self.config.channels);
+        let is_lit = |member: usize, sample: usize| {
+            let pixel = self.pixel(window, Place::read(at(members, member)), member);
+            row_at(self.reader.inputs(), channels, pixel * self.n + sample).iter().any(|&value| value > 0.0)
+        };
+        let mut all = (0..len).flat_map(|member| (0..self.n).map(move |sample| (member, sample)));
+        let is_other = |(member, sample)| is_lit(member, sample) != is_lit(0, 0);
+        self.has_edges() && len >= FEWEST_PIXELS && all.any(is_other)
     }
 }
 
@@ -100,11 +88,9 @@ pub(super) struct Edges<'a> {
     /// For each block and sample: its two coordinates, 1 if it is lit, and its values in units.
     samples: &'a mut [Four],
     /// Of each colour: all samples, with whether they are lit; lit ones, with their values.
-    all: Sums<'a>,
-    lit: Sums<'a>,
+    sums: [Sums<'a>; 2],
     /// The same of what a fit is to.
-    training: Sums<'a>,
-    training_lit: Sums<'a>,
+    training: [Sums<'a>; 2],
     /// The largest value of each colour and channel.
     most: [[Eight; Config::MAX_CHANNELS]; COLOURS],
     /// How much of the light arrives, and how much light arrives, at the points.
@@ -161,13 +147,13 @@ fn logistic(q: &Eight) -> Eight {
 impl<'a> Edges<'a> {
     pub(super) fn new(batch: &Batch<'_>, arena: &mut Arena<'a, f32>) -> Self {
         let (n, channels, fixed) = (batch.call.n, batch.call.config.channels, batch.terms.fixed());
-        let (columns, columns_of_a) = (fixed + FUNCTIONS, fixed + SLOPES);
+        let mut sums = |parts| {
+            [(FUNCTIONS, 1), (SLOPES, channels)].map(|(own, values)| Sums::new(parts, fixed + own, values, arena))
+        };
         Self {
+            sums: sums(COLOURS),
+            training: sums(1),
             samples: arena.take_fours(batch.inside.len() * n * (3 + channels)),
-            all: Sums::new(COLOURS, columns, 1, arena),
-            lit: Sums::new(COLOURS, columns_of_a, channels, arena),
-            training: Sums::new(1, columns, 1, arena),
-            training_lit: Sums::new(1, columns_of_a, channels, arena),
             most: [[NONE; Config::MAX_CHANNELS]; COLOURS],
             shares: arena.take_lanes(POINTS * POINTS),
             // Looked up also where nothing was put there.
@@ -178,15 +164,13 @@ impl<'a> Edges<'a> {
     /// Reads the samples and sums their products.
     #[inline(always)]
     pub(super) fn load(&mut self, batch: &Batch<'_>) {
-        self.all.empty();
-        self.lit.empty();
+        self.sums.iter_mut().for_each(Sums::empty);
         for block in 0..batch.inside.len() {
             self.read(batch, block);
             self.add(batch, block);
         }
         if batch.is_joined {
-            self.all.join();
-            self.lit.join();
+            self.sums.iter_mut().for_each(Sums::join);
             for most in self.most.as_flattened_mut() {
                 *most = [most.iter().copied().fold(0.0, Real::max); LANES];
             }
@@ -244,7 +228,6 @@ impl<'a> Edges<'a> {
             for (out, function) in from_mut(columns, fixed).iter_mut().zip(functions(x, y)) {
                 *out = times(&inside, &function);
             }
-            self.all.add(colour, columns, &[*lit]);
             let mut columns_of_lit = [[NONE; AT_ONCE]; MAX_FIXED + SLOPES];
             let mut values_of_lit = [[NONE; AT_ONCE]; Config::MAX_CHANNELS];
             let columns_of_lit = first_mut(&mut columns_of_lit, fixed + SLOPES);
@@ -257,7 +240,9 @@ impl<'a> Edges<'a> {
                 *out = times(lit, value);
                 *most = out.iter().fold(*most, |most, value| lanes::zip(value, &most, Real::max));
             }
-            self.lit.add(colour, columns_of_lit, values_of_lit);
+            let [all, of_lit] = &mut self.sums;
+            all.add(colour, columns, &[*lit]);
+            of_lit.add(colour, columns_of_lit, values_of_lit);
         }
     }
 
@@ -266,12 +251,11 @@ impl<'a> Edges<'a> {
     #[inline(always)]
     pub(super) fn correct(&mut self, batch: &Batch<'_>, taken: Colours, fits: &mut Fits<'_>) -> Eight {
         let (fixed, channels) = (batch.terms.fixed(), batch.call.config.channels);
-        self.training.set_total(&self.all, taken);
+        self.set_training(taken);
         let present = self.has_both();
         for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
             let others = taken.without(colour);
-            self.training.set_total(&self.all, others);
-            self.training_lit.set_total(&self.lit, others);
+            self.set_training(others);
             let has_both = self.has_both();
             let is_needed = has_both != NONE;
             let mut q = [NONE; MAX_COLUMNS];
@@ -303,9 +287,9 @@ impl<'a> Edges<'a> {
                 }
             }
             for value in 0..batch.values {
-                let whole = batch.whole(value, colour);
-                let left = within.get(value).filter(|_| value < channels).unwrap_or(&whole);
-                fits.set_within(batch, (value, colour), fits.count.saturating_sub(1), left);
+                let left = batch.joined(&at(&within, value));
+                let left = if value < channels { left } else { batch.whole(value, colour) };
+                fits.set_within(batch, (value, colour), fits.count.saturating_sub(1), &left);
             }
         }
         // Of what is left of values without what is known nothing is dark.
@@ -315,9 +299,15 @@ impl<'a> Edges<'a> {
         present
     }
 
+    fn set_training(&mut self, colours: Colours) {
+        for (training, sums) in self.training.iter_mut().zip(&self.sums) {
+            training.set_total(sums, colours);
+        }
+    }
+
     /// Where samples of the training set are lit, and others are not.
     fn has_both(&self) -> Eight {
-        let sums = self.training.part(0);
+        let sums = self.training[0].part(0);
         let [count, lit] = [sums.gram, sums.sides].map(|sums| at(sums, 0));
         lanes::zip(&lit, &count, |lit, count| if lit > 0.0 && lit < count { 1.0 } else { 0.0 })
     }
@@ -326,7 +316,7 @@ impl<'a> Edges<'a> {
     #[inline(always)]
     fn regress(&self, batch: &Batch<'_>, training: Colours, wanted: &Eight, weights: &mut [Eight]) {
         let (width, fixed) = (weights.len(), batch.terms.fixed());
-        let sums = self.training.part(0);
+        let sums = self.training[0].part(0);
         let [count, lit] = [sums.gram, sums.sides].map(|sums| at(sums, 0));
         let odds = lanes::zip(&lit, &count, |lit, count| (lit + 0.5) / (count - lit + 0.5));
         let share = odds.map(|odds| odds / (1.0 + odds));
@@ -356,11 +346,7 @@ impl<'a> Edges<'a> {
                 matrix.iter_mut().chain(sides.iter_mut()).for_each(|sum| *sum = batch.joined(sum));
             }
             for (j, (side, weight)) in sides.iter_mut().zip(weights.iter()).enumerate() {
-                let penalty = penalty(&PENALTIES, fixed, j);
-                *side = lanes::minus_product(*side, *weight, [penalty; LANES]);
-                if let Some(diagonal) = row_mut(matrix, j).last_mut() {
-                    *diagonal = diagonal.map(|value| value + penalty);
-                }
+                *side = lanes::minus_product(*side, *weight, [penalise(matrix, &PENALTIES, fixed, j); LANES]);
             }
             ldlt::factor_each(matrix, width);
             ldlt::solve_each(matrix, sides);
@@ -435,16 +421,13 @@ impl<'a> Edges<'a> {
     /// Least squares to the lit samples of the training set.
     fn fit_lit(&self, batch: &Batch<'_>, a: &mut [[Eight; MAX_FIXED + SLOPES]; Config::MAX_CHANNELS]) {
         let (fixed, width) = (batch.terms.fixed(), batch.terms.fixed() + SLOPES);
-        let sums = self.training_lit.part(0);
+        let sums = self.training[1].part(0);
         let count = at(sums.gram, 0);
         let mut matrix = [NONE; packed_len(MAX_FIXED + SLOPES)];
         let matrix = first_mut(&mut matrix, packed_len(width));
         copy(matrix, sums.gram);
         for j in 0..width {
-            let penalty = penalty(&PENALTIES_OF_A, fixed, j);
-            if let Some(diagonal) = row_mut(matrix, j).last_mut() {
-                *diagonal = diagonal.map(|value| value + penalty);
-            }
+            penalise(matrix, &PENALTIES_OF_A, fixed, j);
         }
         ldlt::factor_each(matrix, width);
         let divisor = lanes::divisor(&count);
@@ -476,17 +459,16 @@ impl<'a> Edges<'a> {
         const FIRST: f32 = 0.5 * CHANGE - SQRT_5 * SQRT_3 * STEP;
         let base = self.place_part(batch, at, q);
         let Some(&[x, y, xx, xy, yy]) = q.get(batch.terms.fixed()..).and_then(<[Eight]>::first_chunk) else { return };
-        let mut largest = base.map(Real::abs);
-        for (weight, most) in [(x, SQRT_3), (y, SQRT_3), (xx, SQRT_5), (xy, 3.0), (yy, SQRT_5)] {
-            largest = lanes::zip(&largest, &weight, |sum, weight| sum + most * Real::abs(weight));
-        }
+        let corner = [(base, 1.0), (x, -SQRT_3), (y, -SQRT_3), (xx, SQRT_5), (xy, 3.0), (yy, SQRT_5)];
+        let largest = corner.iter().fold(NONE, |sum, (weight, f)| {
+            lanes::zip(&sum, weight, |sum, weight| sum + Real::abs(*f) * Real::abs(weight))
+        });
         let scale = largest.map(|largest| -LOG2_E * (MOST / Real::max(largest, MOST)));
         let power = |terms: &[(Eight, f32)]| {
             let sum = terms.iter().fold(NONE, |sum, (weight, f)| lanes::plus_product(sum, *weight, [*f; LANES]));
             lanes::exp2(&product(&sum, &scale))
         };
         let multiply = |a: &mut Eight, b: &Eight| *a = product(a, b);
-        let corner = [(base, 1.0), (x, -SQRT_3), (y, -SQRT_3), (xx, SQRT_5), (xy, 3.0), (yy, SQRT_5)];
         let (mut begin, mut down) = (power(&corner), power(&[(y, STEP), (xy, -SQRT_3 * STEP), (yy, FIRST)]));
         let mut along = power(&[(x, STEP), (xy, -SQRT_3 * STEP), (xx, FIRST)]);
         let (down_change, change) = (power(&[(yy, CHANGE)]), power(&[(xx, CHANGE)]));
@@ -589,8 +571,11 @@ impl<'a> Edges<'a> {
     }
 }
 
-/// The penalty of a column.
-fn penalty(penalties: &[f32], fixed: usize, column: usize) -> f32 {
-    let index = if column < fixed { column.min(1) } else { 2 + column - fixed };
-    at(penalties, index)
+/// Adds the penalty of a column to its square, and says it.
+fn penalise(matrix: &mut [Eight], penalties: &[f32], fixed: usize, column: usize) -> f32 {
+    let penalty = at(penalties, if column < fixed { column.min(1) } else { 2 + column - fixed });
+    if let Some(square) = row_mut(matrix, column).last_mut() {
+        *square = square.map(|square| square + penalty);
+    }
+    penalty
 }

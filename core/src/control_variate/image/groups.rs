@@ -1,11 +1,11 @@
 //! Groups: the pixels of one window and one surface, which share fits.
 
-use super::call::Layout;
+use super::call::{Call, Layout};
 use super::pixels::Image;
 use crate::arena::Arena;
 use crate::lanes::LANES;
-use crate::matrix::{at, row_at, row_at_mut};
-use crate::rows::{first, part, part_mut};
+use crate::matrix::{at, from, from_mut, halves_mut, row_at, row_at_mut};
+use crate::rows::{first, halves, part};
 use heapless::Vec;
 
 /// Windows that are worked on together hold at most so many pixels, or are eight.
@@ -143,11 +143,27 @@ impl Layout<'_> {
         if self.is_joined() { index } else { self.windows.number(left + x, top + y, frame) }
     }
 
+    /// The places of a window by squares of 2 x 2, so that every fourth of them is not next to another.
+    fn each_place(&self, mut visit: impl FnMut([usize; 3])) {
+        let [width, height, frames] = self.windows.extent;
+        for frame in 0..frames {
+            for (y, x) in (0..height).step_by(2).flat_map(|y| (0..width).step_by(2).map(move |x| (y, x))) {
+                for (x, y) in [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)] {
+                    if x < width && y < height {
+                        visit([x, y, frame]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Call<'_> {
     /// Divides windows `first` to before `end` into groups.
     pub(super) fn divide(&self, first: usize, end: usize, groups: &mut Groups<'_>) {
         groups.count = 0;
         if self.is_joined() {
-            groups.push(0, 0, self.windows.pixels());
+            groups.push(self, 0, 0, self.windows.pixels());
             return groups.sort();
         }
         let mut filled = 0;
@@ -174,32 +190,19 @@ impl Layout<'_> {
                 if filled - start < self.least() {
                     filled = start;
                 } else {
-                    groups.push(index, start, filled - start);
+                    groups.push(self, index, start, filled - start);
                 }
             }
         }
         groups.sort();
     }
-
-    /// The places of a window by squares of 2 x 2, so that every fourth of them is not next to another.
-    fn each_place(&self, mut visit: impl FnMut([usize; 3])) {
-        let [width, height, frames] = self.windows.extent;
-        for frame in 0..frames {
-            for (y, x) in (0..height).step_by(2).flat_map(|y| (0..width).step_by(2).map(move |x| (y, x))) {
-                for (x, y) in [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)] {
-                    if x < width && y < height {
-                        visit([x, y, frame]);
-                    }
-                }
-            }
-        }
-    }
 }
 
 impl Groups<'_> {
-    fn push(&mut self, window: usize, start: usize, len: usize) {
+    fn push(&mut self, call: &Call<'_>, window: usize, start: usize, len: usize) {
+        let has_edges = call.has_edge(window, part(self.list, start, len), len);
         if let Some(record) = row_at_mut(self.records, self.width, self.count).first_chunk_mut::<RECORD>() {
-            *record = [window, start, len, 0].map(|number| f32::from_bits(number as u32));
+            *record = [window, start, len, usize::from(has_edges)].map(|number| f32::from_bits(number as u32));
             self.count += 1;
         }
     }
@@ -209,13 +212,6 @@ impl Groups<'_> {
         let record = row_at(self.records, self.width, index).first_chunk::<RECORD>();
         let [window, start, len, has_edges] = record.map_or([0; RECORD], |record| record.map(bits));
         Group { index, window, start, len, has_edges: has_edges > 0 }
-    }
-
-    /// Notes that a group has lit and dark samples.
-    pub(super) fn set_edges(&mut self, index: usize) {
-        if let Some([_, _, _, has_edges, ..]) = self.records.get_mut(index * self.width..) {
-            *has_edges = f32::from_bits(1);
-        }
     }
 
     /// Orders the groups by size: eight that are worked on side by side then have about as many pixels.
@@ -248,32 +244,13 @@ impl Groups<'_> {
         Some(self.numbered(bits(index)))
     }
 
-    /// What is told of a group.
-    pub(super) fn told(&self, group: &Group) -> &[f32] {
-        part(self.records, group.index * self.width + RECORD, 2 + self.channels)
+    /// What is told of a group, and of each turn for each channel the lowest and the highest value.
+    pub(super) fn found(&self, group: &Group) -> (&[f32], &[f32]) {
+        halves(from(row_at(self.records, self.width, group.index), RECORD), 2 + self.channels)
     }
 
-    pub(super) fn told_mut(&mut self, group: &Group) -> &mut [f32] {
-        part_mut(self.records, group.index * self.width + RECORD, 2 + self.channels)
-    }
-
-    /// Where the limits of a turn begin.
-    fn limits_at(&self, group: &Group, turn: usize) -> usize {
-        group.index * self.width + RECORD + 2 + self.channels + turn * 2 * self.channels
-    }
-
-    /// For each channel the lowest and the highest value that fits are made to in a turn.
-    pub(super) fn limits(&self, group: &Group, turn: usize) -> &[f32] {
-        part(self.records, self.limits_at(group, turn), 2 * self.channels)
-    }
-
-    pub(super) fn limits_mut(&mut self, group: &Group, turn: usize) -> &mut [f32] {
-        part_mut(self.records, self.limits_at(group, turn), 2 * self.channels)
-    }
-
-    /// Whether a group has pixels beyond its limits.
-    pub(super) fn has_limits(&self, group: &Group, turn: usize) -> bool {
-        self.limits(group, turn).iter().any(|limit| limit.is_finite())
+    pub(super) fn found_mut(&mut self, group: &Group) -> (&mut [f32], &mut [f32]) {
+        halves_mut(from_mut(row_at_mut(self.records, self.width, group.index), RECORD), 2 + self.channels)
     }
 
     /// The places of a group's pixels, to be read; none where all pixels are one group.

@@ -14,10 +14,10 @@ use super::sums::Band;
 use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, row_at};
+use crate::matrix::{at, copy, row_at, row_at_mut};
 use crate::processor::Processor;
 use crate::real::Real;
-use crate::rows::{rows, rows_mut};
+use crate::rows::rows;
 use core::hint::black_box;
 
 impl Call<'_> {
@@ -39,7 +39,6 @@ impl Call<'_> {
                 }
                 let end = (first + self.windows_at_once()).min(last * across);
                 self.divide(first, end, &mut groups);
-                self.find_edges(&mut groups);
                 self.fit::<P>(&mut groups, arena);
                 steps::add::<P>(self, &groups, &mut band);
             }
@@ -56,7 +55,7 @@ impl Call<'_> {
     /// Fits to all groups: first to all of their pixels, then, where some are too bright, to the others.
     fn fit<P: Processor>(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) {
         let later = if self.is_single_fit() { 0 } else { self.turns() };
-        let all = self.fits_without_edges();
+        let (all, channels) = (self.fits_without_edges(), self.config.channels);
         for (pass, has_edges) in (0..=later).flat_map(|pass| [(pass, false), (pass, true)]) {
             let turn = pass.checked_sub(1);
             let mut place = 0;
@@ -68,7 +67,9 @@ impl Call<'_> {
                 // Eight, or fewer if the next have other columns.
                 while let Some(group) = groups.by_size(place).filter(|_| used < LANES) {
                     let is_kind = group.has_edges == has_edges && (has_edges || all);
-                    if is_kind && turn.is_none_or(|turn| groups.has_limits(&group, turn)) {
+                    let (_, limits) = groups.found(&group);
+                    let is_limited = |turn| row_at(limits, 2 * channels, turn).iter().any(|limit| limit.is_finite());
+                    if is_kind && turn.is_none_or(is_limited) {
                         if last.0 != group.len {
                             let terms = Terms::new(self, group.len, false);
                             last = (group.len, (terms.columns(), terms.all_own()));
@@ -108,7 +109,7 @@ impl Call<'_> {
         let mut batch = Batch::new(self, terms, lanes, arena);
         steps::survey::<P>(&mut batch, groups);
         if let Some(turn) = turn {
-            batch.leave_out(|group| groups.limits(group, turn));
+            batch.leave_out(groups, turn);
         }
         if self.image.has_known() {
             steps::relate::<P>(&mut batch, arena);
@@ -166,7 +167,7 @@ impl Call<'_> {
         }
         let freedom = lanes::divisor(&spreads.freedom);
         for (lane, group) in batch.lanes.iter().enumerate().filter(|(_, group)| group.len > 0) {
-            let told = groups.told_mut(group);
+            let (told, _) = groups.found_mut(group);
             let Some(([gain, has_error], errors)) = told.split_first_chunk_mut() else { continue };
             // Without freedom there is no spread to tell the error from.
             let is_known = !by_groups || spreads.freedom[lane % LANES] > 0.0;
@@ -242,10 +243,8 @@ impl Batch<'_> {
             let trust = at(shares.of(turn, channel), 0);
             let limits = bright::limits(self, channel, judges, &trust);
             for (lane, group) in self.lanes.iter().enumerate().filter(|(_, group)| group.len > 0) {
-                let out = groups.limits_mut(group, turn);
-                if let Some([lowest, highest]) = rows_mut(out, 2).nth(channel) {
-                    [*lowest, *highest] = limits[lane % LANES];
-                }
+                let (_, out) = groups.found_mut(group);
+                copy(row_at_mut(out, 2, turn * channels + channel), &limits[lane % LANES]);
             }
         }
     }

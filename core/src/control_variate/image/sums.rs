@@ -98,7 +98,7 @@ impl Call<'_> {
         let [across, down, _] = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
         let all = self.fits_without_edges();
         for group in (0..groups.count).map(|index| groups.numbered(index)).filter(|group| all || group.has_edges) {
-            let Some(([gain, has_error], errors)) = groups.told(&group).split_first_chunk() else { continue };
+            let Some(([gain, has_error], errors)) = groups.found(&group).0.split_first_chunk() else { continue };
             let window = self.window(group.window);
             let (left, top) = (window[0] - self.windows.given.x, window[1] % band.rows.max(1));
             let members = groups.members(&group);
