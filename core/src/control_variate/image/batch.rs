@@ -12,7 +12,7 @@ use super::sliced::Sliced;
 use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, copy, from_mut, halves_mut, row_at, row_at_mut};
+use crate::matrix::{at, row_at, row_at_mut};
 use crate::real::Real;
 use crate::rows::rows;
 
@@ -54,11 +54,11 @@ pub(super) struct Batch<'a> {
     pub(super) places: &'a mut [Four],
     /// For each block 1 where a pixel is that fits are made to, else 0.
     pub(super) inside: &'a mut [Four],
-    /// For each block and channel, the lowest and the highest value.
-    pub(super) ranges: &'a mut [Four],
-    /// For each block and channel, the coefficient of what is known, and its integral.
-    pub(super) coefficients: &'a mut [Four],
-    pub(super) integrals: &'a mut [Four],
+    /// For each channel and slot, the lowest and the highest value.
+    pub(super) ranges: &'a mut [[Eight; 2]],
+    /// For each channel and slot, the coefficient of what is known, and its integral.
+    pub(super) coefficients: &'a mut [Eight],
+    pub(super) integrals: &'a mut [Eight],
     /// For each block, the slices of the pixels' samples, where slices are apart and pixels have one.
     pub(super) slices: &'a mut [Four],
     /// Values of a sample.
@@ -137,7 +137,7 @@ impl<'a> Batch<'a> {
         let slots = if call.is_joined() { len.div_ceil(LANES) } else { len };
         let (columns, channels, values) = (terms.columns(), call.config.channels, call.values());
         let (blocks, [between, within]) = (blocks(call, slots), parts(call));
-        let known = if call.image.has_known() { blocks * channels } else { 0 };
+        let known = if call.image.has_known() { channels * blocks * AT_ONCE } else { 0 };
         let ((kept, apart), summed) = (kept(&terms, call.n), terms.of_slices(values, call.n));
         Self {
             call,
@@ -149,9 +149,9 @@ impl<'a> Batch<'a> {
             numbers: arena.take_fours(blocks),
             places: arena.take_fours(blocks * terms.fixed()),
             inside: arena.take_fours(blocks),
-            ranges: arena.take_fours(blocks * 2 * channels),
-            coefficients: arena.take_fours(known),
-            integrals: arena.take_fours(known),
+            ranges: arena.take_lanes(2 * channels * blocks * AT_ONCE).as_chunks_mut().0,
+            coefficients: arena.take_lanes(known),
+            integrals: arena.take_lanes(known),
             slices: arena.take_fours(blocks * apart),
             values,
             means: arena.take_fours(blocks * values),
@@ -212,18 +212,6 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// The columns of a block's pixels.
-    #[inline(always)]
-    pub(super) fn put_columns(&self, block: usize, columns: &mut [Four]) {
-        let terms = &self.terms;
-        let places = row_at(self.places, terms.fixed(), block);
-        let functions = row_at(self.functions, terms.functions, block);
-        copy(columns, places);
-        let (out, products) = halves_mut(columns, terms.fixed() + terms.functions);
-        copy(from_mut(out, terms.fixed()), functions);
-        terms.multiply(places, functions, products);
-    }
-
     /// Where the lanes' pixels are, and between what values theirs lie.
     #[inline(always)]
     pub(super) fn survey(&mut self, groups: &Groups<'_>) {
@@ -234,7 +222,7 @@ impl<'a> Batch<'a> {
         let [width, height] = [call.windows.given.width, call.windows.given.height].map(|extent| extent as u32);
         let corners = self.lanes.map(|group| call.pixel(call.window(group.window), Place::default(), 0) as u32);
         let members = self.lanes.map(|group| groups.members(&group));
-        let mut other = None;
+        let (mut other, slots) = (None, self.inside.len() * AT_ONCE);
         for block in 0..self.inside.len() {
             for row in 0..AT_ONCE {
                 let (mut one, mut places) = (NONE, [0.0; LANES].map(Place::read));
@@ -258,11 +246,10 @@ impl<'a> Batch<'a> {
                     numbers[l] = if one[l] > 0.0 { numbers[l] } else { other };
                 }
                 let pixels = numbers.map(|number| (number & Image::MAX_PIXELS) as usize);
-                for (channel, range) in
-                    row_at_mut(self.ranges, 2 * channels, block).as_chunks_mut().0.iter_mut().enumerate()
-                {
-                    let [low, high]: &mut [Four; 2] = range;
-                    [low[row], high[row]] = call.range(&pixels, channel).map(|value| only(&one, &value));
+                for channel in 0..channels {
+                    if let Some(range) = self.ranges.get_mut(channel * slots + block * AT_ONCE + row) {
+                        *range = call.range(&pixels, channel).map(|value| only(&one, &value));
+                    }
                 }
                 if let (Some(out), Some(inside)) = (self.numbers.get_mut(block), self.inside.get_mut(block)) {
                     (out[row], inside[row]) = (pixels.map(|pixel| f32::from_bits(pixel as u32)), one);
@@ -289,13 +276,12 @@ impl<'a> Batch<'a> {
                     [lowest[lane % LANES], highest[lane % LANES]] = [low, high];
                 }
             }
-            for (inside, ranges) in self.inside.iter_mut().zip(rows(self.ranges, 2 * channels)) {
-                let [low, high] = row_at(ranges, 2, channel) else { continue };
-                for (inside, (low, high)) in inside.iter_mut().zip(low.iter().zip(high)) {
-                    for l in 0..LANES {
-                        let is_within = lowest[l] <= low[l] && high[l] <= highest[l];
-                        inside[l] = if is_within { inside[l] } else { 0.0 };
-                    }
+            let inside = self.inside.as_flattened_mut();
+            let ranges = row_at(self.ranges, inside.len(), channel);
+            for (inside, [low, high]) in inside.iter_mut().zip(ranges) {
+                for l in 0..LANES {
+                    let is_within = lowest[l] <= low[l] && high[l] <= highest[l];
+                    inside[l] = if is_within { inside[l] } else { 0.0 };
                 }
             }
         }
@@ -304,22 +290,19 @@ impl<'a> Batch<'a> {
     /// As for one pixel's samples: the zero at a value, the unit near the largest.
     #[inline(always)]
     pub(super) fn set_units(&mut self) {
-        let channels = self.call.config.channels;
-        for (channel, units) in self.units.iter_mut().enumerate().take(channels) {
+        let inside = self.inside.as_flattened();
+        for (units, ranges) in self.units.iter_mut().zip(rows(self.ranges, inside.len())) {
             let mut largest = NONE;
             let mut first = [f32::INFINITY; LANES];
-            for (inside, ranges) in self.inside.iter().zip(rows(self.ranges, 2 * channels)) {
-                let [low, high] = row_at(ranges, 2, channel) else { continue };
-                for (inside, (low, high)) in inside.iter().zip(low.iter().zip(high)) {
-                    for l in 0..LANES {
-                        // Both sides of each choice are ready, so that there is nothing to jump over.
-                        let most = Real::max(Real::abs(low[l]), Real::abs(high[l]));
-                        let (most, low) = if inside[l] > 0.0 { (most, low[l]) } else { (0.0, f32::INFINITY) };
-                        largest[l] = Real::max(most, largest[l]);
-                        first[l] = if first[l] < f32::INFINITY { first[l] } else { low };
-                    }
-                    lanes::keep_together();
+            for (inside, [low, high]) in inside.iter().zip(ranges) {
+                for l in 0..LANES {
+                    // Both sides of each choice are ready, so that there is nothing to jump over.
+                    let most = Real::max(Real::abs(low[l]), Real::abs(high[l]));
+                    let (most, low) = if inside[l] > 0.0 { (most, low[l]) } else { (0.0, f32::INFINITY) };
+                    largest[l] = Real::max(most, largest[l]);
+                    first[l] = if first[l] < f32::INFINITY { first[l] } else { low };
                 }
+                lanes::keep_together();
             }
             if self.is_joined {
                 largest = [largest.into_iter().fold(0.0, Real::max); LANES];

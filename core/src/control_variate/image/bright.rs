@@ -4,7 +4,7 @@
 //! So where the mean is trusted most, such pixels are left out of the fits to others.
 
 use super::batch::Batch;
-use super::products::{Colours, Eight, NONE, plus};
+use super::products::{AT_ONCE, Colours, Eight, NONE, plus};
 use crate::lanes::{self, LANES};
 use crate::matrix::row_at;
 
@@ -60,7 +60,6 @@ impl Highest {
 /// Where a judge itself is too far and fits are trusted, they explain it, and keep such values.
 #[inline(always)]
 pub(super) fn limits(batch: &Batch<'_>, channel: usize, judges: Colours, trust: &Eight) -> [[f32; 2]; LANES] {
-    let channels = batch.call.config.channels;
     let mut limits = [[f32::NEG_INFINITY, f32::INFINITY]; LANES];
     if judges == Colours::ALL && trust.iter().all(|&trust| trust < DOUBT) {
         return limits;
@@ -75,20 +74,18 @@ pub(super) fn limits(batch: &Batch<'_>, channel: usize, judges: Colours, trust: 
     // Of judges, and of others.
     let (mut highest, mut lowest) = (Highest::new(), Highest::new());
     let (mut most, mut least) = (Highest::new(), Highest::new());
-    for (block, inside) in batch.inside.iter().enumerate() {
-        let [low, high] = row_at(batch.ranges, 2, block * channels + channel) else { continue };
-        for (inside, (low, high)) in inside.iter().zip(low.iter().zip(high)) {
-            let seen = |value: Eight| {
-                lanes::zip(&value, inside, |value, inside| if inside > 0.0 { value } else { f32::NEG_INFINITY })
-            };
-            let (high, low) = (seen(*high), seen(low.map(|low| -low)));
-            if judges.has(block) {
-                highest.add(high, kept);
-                lowest.add(low, kept);
-            } else {
-                most.add(high, 1);
-                least.add(low, 1);
-            }
+    let inside = batch.inside.as_flattened();
+    for (slot, (inside, [low, high])) in inside.iter().zip(row_at(batch.ranges, inside.len(), channel)).enumerate() {
+        let seen = |value: Eight| {
+            lanes::zip(&value, inside, |value, inside| if inside > 0.0 { value } else { f32::NEG_INFINITY })
+        };
+        let (high, low) = (seen(*high), seen(low.map(|low| -low)));
+        if judges.has(slot / AT_ONCE) {
+            highest.add(high, kept);
+            lowest.add(low, kept);
+        } else {
+            most.add(high, 1);
+            least.add(low, 1);
         }
     }
     if batch.is_joined {

@@ -313,7 +313,7 @@ impl<'a> Fits<'a> {
         let (width, fixed) = (terms.columns(), terms.fixed());
         let places = row_at(batch.places, fixed, block);
         let inside = at(batch.inside, block);
-        batch.put_columns(block, self.solved);
+        batch.put_pixels(block, false, self.solved, &mut []);
         let Part { gram, sides, .. } = self.system.part(0);
         ldlt::forward_each(gram, 0, self.solved);
         let mut leverage = [NONE; AT_ONCE];

@@ -6,11 +6,12 @@
 //! most v, and at most 1. Where more arrives than is known, v says little.
 
 use super::batch::{Batch, KNOWN_SUMS};
-use super::products::{AT_ONCE, Eight, Four, NONE, minus, only, plus, product};
+use super::products::{AT_ONCE, Eight, NONE, minus, only, plus, product};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
-use crate::matrix;
+use crate::matrix::at;
 use crate::real::Real;
+use crate::rows::rows_mut;
 use core::hint::black_box;
 
 /// Integrals count as at least this much of the group's largest: what else arrives would decide where they are small.
@@ -67,35 +68,27 @@ impl Batch<'_> {
     #[inline(always)]
     pub(super) fn relate(&mut self, arena: &mut Arena<'_, f32>) {
         let call = self.call;
-        let channels = call.config.channels;
         let mut arena = arena.scratch();
         let inside = self.inside.as_flattened();
         // Of each slot alone, and of all before it.
         let own = arena.take_lanes(KNOWN_SUMS * inside.len()).as_chunks_mut::<KNOWN_SUMS>().0;
         let before = arena.take_lanes(KNOWN_SUMS * inside.len()).as_chunks_mut::<KNOWN_SUMS>().0;
         let inverse = 1.0 / call.n as f32;
-        let place = |slot: usize, channel: usize| (slot / AT_ONCE * channels + channel, slot % AT_ONCE);
-        for channel in 0..channels {
+        let [all_coefficients, all_integrals] = [&mut self.coefficients, &mut self.integrals].map(core::mem::take);
+        let channels = rows_mut(all_coefficients, inside.len()).zip(rows_mut(all_integrals, inside.len()));
+        for (channel, (coefficients, integrals)) in channels.enumerate() {
             let mut largest = NONE;
-            for (slot, inside) in inside.iter().enumerate() {
+            for (slot, (inside, integral)) in inside.iter().zip(integrals.iter_mut()).enumerate() {
                 let pixels = self.pixels((slot / AT_ONCE, slot % AT_ONCE));
-                let integral = call.gather(call.image.known_integrals, &pixels, (1, 0), channel);
-                largest = lanes::zip(&largest, &only(inside, &integral), Real::max);
-                let (at, row) = place(slot, channel);
-                if let Some(out) = self.integrals.get_mut(at) {
-                    out[row] = integral;
-                }
+                *integral = call.gather(call.image.known_integrals, &pixels, (1, 0), channel);
+                largest = lanes::zip(&largest, &only(inside, integral), Real::max);
             }
             if self.is_joined {
                 largest = [largest.into_iter().fold(0.0, Real::max); LANES];
             }
-            let get = |all: &[Four], slot: usize| {
-                let (at, row) = place(slot, channel);
-                matrix::at(all, at)[row]
-            };
             let mut all = [NONE; KNOWN_SUMS];
             for (slot, (own, before)) in own.iter_mut().zip(before.iter_mut()).enumerate() {
-                let inside = matrix::at(inside, slot);
+                let inside = at(inside, slot);
                 let (mut mean, mut known) = (NONE, NONE);
                 let pixels = self.pixels((slot / AT_ONCE, slot % AT_ONCE));
                 for sample in 0..call.n {
@@ -104,7 +97,7 @@ impl Batch<'_> {
                         *sum = plus(sum, &value.map(|value| value * inverse));
                     }
                 }
-                let integral = get(self.integrals, slot);
+                let integral = at(integrals, slot);
                 let unit = lanes::zip(&integral, &largest, |integral, largest| Real::max(integral, largest * LEAST));
                 let unit = lanes::divisor(&unit);
                 let values = [mean, known, minus(&known, &integral)];
@@ -120,14 +113,12 @@ impl Batch<'_> {
             }
             // Sums of all pixels but one, without a difference: that would hold digits of the one.
             let mut others = if self.is_joined { all.map(|sum| other_lanes(&sum)) } else { [NONE; KNOWN_SUMS] };
-            for (slot, (own, before)) in own.iter().zip(before.iter()).enumerate().rev() {
-                let (at, row) = place(slot, channel);
-                let integral = get(self.integrals, slot);
-                if let Some(out) = self.coefficients.get_mut(at) {
-                    out[row] = only(&integral, &coefficient(&both(before, &others)));
-                }
+            let slots = own.iter().zip(before.iter()).zip(coefficients.iter_mut().zip(integrals.iter()));
+            for ((own, before), (out, integral)) in slots.rev() {
+                *out = only(integral, &coefficient(&both(before, &others)));
                 others = both(&others, own);
             }
         }
+        (self.coefficients, self.integrals) = (all_coefficients, all_integrals);
     }
 }

@@ -49,7 +49,7 @@ impl Batch<'_> {
                 // Of several samples, slices have sums of their own, and pixels' means those of trends alone.
                 let needed = if call.n > 1 { self.terms.of_means() } else { columns };
                 let (columns, means) = (first_mut(pixels.columns, needed), first_mut(pixels.values, values));
-                self.put_means(block, columns, means);
+                self.put_pixels(block, true, columns, means);
                 if slices > 0 && call.n == 1 {
                     let picked = call.slices(&samples);
                     sliced.add(&picked, columns, means);
@@ -195,9 +195,9 @@ impl Batch<'_> {
         terms.multiply(fixed, own, products);
     }
 
-    /// The columns and values of a block's pixels that fits are made to.
+    /// The columns of a block's pixels, and their values; as fits are made to them, where `fits`.
     #[inline(always)]
-    fn put_means(&self, block: usize, columns: &mut [Four], values: &mut [Four]) {
+    pub(super) fn put_pixels(&self, block: usize, fits: bool, columns: &mut [Four], values: &mut [Four]) {
         let (terms, n) = (&self.terms, self.call.n);
         let places = row_at(self.places, terms.fixed(), block);
         let (fixed, rest) = halves_mut(columns, terms.fixed());
@@ -205,9 +205,8 @@ impl Batch<'_> {
         copy(fixed, places);
         copy(functions, row_at(self.functions, terms.functions, block));
         copy(values, row_at(self.means, self.values, block));
-        let inside = at(self.inside, block);
-        if self.leaves_out || n > 1 {
-            let root = Real::sqrt(n as f32);
+        if fits && (self.leaves_out || n > 1) {
+            let (inside, root) = (at(self.inside, block), Real::sqrt(n as f32));
             for four in fixed.iter_mut().chain(&mut *functions).chain(values.iter_mut()) {
                 *four = zip_four(&inside, four, |inside, value| only(inside, &value.map(|value| value * root)));
                 lanes::keep_together();

@@ -4,7 +4,7 @@ use super::batch::Batch;
 use super::call::Call;
 use super::products::{AT_ONCE, AT_ONCE_LANES, Eight, Four, NONE, Rows, minus};
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, first_mut, from, halves_mut, row_at};
+use crate::matrix::{at, first_mut, from, halves_mut};
 use crate::real::{Real, saturate};
 use crate::rows::part_mut;
 use core::ops::Range;
@@ -146,25 +146,22 @@ impl Call<'_> {
         row: usize,
         values: &mut [Four],
     ) {
-        let channels = self.config.channels;
-        let (inputs, rest) = halves_mut(values, channels);
+        let (inputs, rest) = halves_mut(values, self.config.channels);
+        let index = |channel: usize| (channel * batch.inside.len() + block) * AT_ONCE + slot;
         for (channel, values) in inputs.iter_mut().enumerate() {
             let out = part_mut(values, row, samples.len());
-            match row_at(batch.ranges, 2, block * channels + channel) {
+            match batch.ranges.get(index(channel)) {
                 // The survey has read it.
-                [only, _] if self.n == 1 => out.fill(only[slot % AT_ONCE]),
+                Some([only, _]) if self.n == 1 => out.fill(*only),
                 _ => self.put_rows(self.reader.inputs(), pixels, (self.n, samples.start), channel, out),
             }
         }
-        let [coefficients, integrals] =
-            [&*batch.coefficients, &*batch.integrals].map(|all| row_at(all, channels, block));
-        let known = coefficients.iter().zip(integrals).zip(rest.iter_mut()).zip(inputs.iter());
-        for (channel, (((coefficient, integral), out), values)) in known.enumerate() {
+        for (channel, (out, values)) in rest.iter_mut().zip(inputs).enumerate() {
             let out = part_mut(out, row, samples.len());
+            let [coefficient, integral] = [&*batch.coefficients, &*batch.integrals].map(|all| at(all, index(channel)));
             self.put_rows(self.image.known, pixels, (self.n, samples.start), channel, out);
             for (out, value) in out.iter_mut().zip(from(values, row)) {
-                let apart = minus(out, &integral[slot % AT_ONCE]);
-                *out = lanes::minus_product(*value, coefficient[slot % AT_ONCE], apart);
+                *out = lanes::minus_product(*value, coefficient, minus(out, &integral));
             }
         }
     }

@@ -321,7 +321,7 @@ impl<'a> Apart<'a> {
         let (terms, values, count) = (&batch.terms, batch.values, batch.terms.ends.len());
         let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(batch));
         let places = row_at(batch.places, fixed, block);
-        batch.put_columns(block, self.columns);
+        batch.put_pixels(block, false, self.columns, &mut []);
         let (Some(slices), Some(inside)) = (batch.slices.get(block), batch.inside.get(block)) else { return };
         for (line, slices) in slices.iter().enumerate() {
             let slices = slices.map(|slice| slice as usize);
