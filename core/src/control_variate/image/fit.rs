@@ -6,17 +6,16 @@
 use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED, blocks};
 use super::call::Layout;
-use super::products::{
-    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, minus, only, product, sums_to,
-};
+use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, product, sums_to};
+use super::seen::{SUMS, Seen};
 use super::slices::Apart;
-use super::terms::{MAX_FITS, SINGULAR, Terms, scale};
+use super::terms::{MAX_FITS, Terms, scale};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
 use crate::matrix::{at, copy, diagonal, first_mut, from, packed_len, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
-use crate::rows::{first, part, rows, rows_mut};
+use crate::rows::{first, rows, rows_mut};
 
 /// What a fit leaves of a sum of squares is at least this of it.
 const ROUNDING: f32 = 1e-5;
@@ -43,8 +42,6 @@ pub(super) struct Fits<'a> {
     between: Sums<'a>,
     /// Of each value and candidate; where pixels have one sample those of the fixed columns alone.
     coefficients: &'a mut [Eight],
-    /// 1 / D, in a row: every block needs it.
-    pivots: &'a mut [Eight],
     /// D^-1 L^-1 of the fixed columns of the unit matrix.
     units: &'a mut [Eight],
     /// L^-1 of a block's columns.
@@ -58,7 +55,7 @@ pub(super) struct Fits<'a> {
 pub(super) fn fits_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
     let (columns, values, count) = (terms.of_deviations(), layout.values(), terms.candidates());
     let totals = Sums::len(columns, values) + Sums::len(terms.of_means(), values) + within_len(terms, values, layout.n);
-    let once = totals + Apart::len(terms, values, layout.n) + (values * count + MAX_FIXED + 1 + AT_ONCE) * columns;
+    let once = totals + Apart::len(terms, values, layout.n) + (values * count + MAX_FIXED + AT_ONCE) * columns;
     let each = AT_ONCE * count * values;
     blocks(layout, slots).checked_mul(each)?.checked_add(once)?.checked_mul(LANES)?.checked_add(terms.columns())
 }
@@ -75,7 +72,6 @@ impl<'a> Fits<'a> {
             system: Sums::new(1, columns, values, arena),
             between: Sums::new(1, terms.of_means(), values, arena),
             coefficients: arena.take_lanes(values * count * columns),
-            pivots: arena.take_lanes(columns),
             units: arena.take_lanes(terms.fixed() * columns),
             solved: arena.take_fours(columns),
             penalties: arena.take(terms.columns()),
@@ -88,17 +84,59 @@ impl<'a> Fits<'a> {
     /// Corrects pixels of one sample of the colours `taken`, which the fit to all of them has seen.
     #[inline(always)]
     pub(super) fn leave_own(&mut self, batch: &Batch<'_>, taken: Colours) {
+        let Part { gram: factors, sides: of_values, .. } = self.system.part(0);
+        let seen = Seen { factors, of_values, of_units: self.units, trends: self.coefficients };
+        let none = ([NONE; AT_ONCE], [[NONE; AT_ONCE]; SUMS]);
         for block in batch.blocks(taken) {
-            self.leave_block(batch, block);
+            batch.put_pixels(block, false, self.solved, &mut []);
+            seen.correct(batch, block, 0..batch.terms.ends.len(), self.solved, none, self.corrections);
         }
     }
 
     /// Corrects pixels of several samples of a colour, which the fit has not seen.
     #[inline(always)]
     pub(super) fn correct_colour(&mut self, batch: &Batch<'_>, colour: usize) {
-        self.judge(batch, colour);
-        for block in batch.blocks(Colours(1 << colour)) {
-            self.apply(batch, block);
+        let terms = &batch.terms;
+        let (width, fixed) = (terms.columns(), terms.fixed());
+        // What the fit leaves of the samples about their pixels' means.
+        let Part { gram, sides, squares } = batch.within.part(colour);
+        for (value, (whole, sides)) in squares.iter().zip(rows(sides, width)).enumerate() {
+            for fit in 0..terms.ends.len() {
+                let mut left = *whole;
+                let coefficients = self.coefficients(terms, value, fit);
+                for (j, b) in coefficients.iter().enumerate().skip(fixed) {
+                    let (Some((square, row)), Some(side)) = (row(gram, j).split_last(), sides.get(j)) else { break };
+                    // b_j (G_jj b_j + 2 (sum_k G_jk b_k - r_j)).
+                    let mut sum = side.map(|side| -side);
+                    for (product, other) in from(row, fixed).iter().zip(from(coefficients, fixed)) {
+                        sum = lanes::plus_product(sum, *product, *other);
+                        lanes::keep_together();
+                    }
+                    let sum = lanes::plus_product(sum.map(|sum| sum + sum), *square, *b);
+                    left = lanes::plus_product(left, sum, *b);
+                }
+                self.set_within(batch, (value, colour), fit, &left);
+            }
+        }
+        // The fixed columns follow the signal, and correct nothing.
+        for (block, value) in
+            batch.blocks(Colours(1 << colour)).flat_map(|block| (0..batch.values).map(move |value| (block, value)))
+        {
+            let functions = row_at(batch.functions, terms.functions, block);
+            let places = row_at(batch.places, fixed, block);
+            for fit in 0..terms.ends.len() {
+                let own = from(self.coefficients(terms, value, fit), fixed);
+                let mut fitted = combine([NONE; AT_ONCE], functions, own);
+                for (axis, own) in places.iter().skip(1).zip(rows(from(own, terms.functions), terms.moving)) {
+                    let slope = combine([NONE; AT_ONCE], functions, own);
+                    for row in 0..AT_ONCE {
+                        fitted[row] = lanes::plus_product(fitted[row], axis[row], slope[row]);
+                    }
+                }
+                if let Some(out) = self.corrections_mut(block, value).get_mut(fit) {
+                    *out = fitted.map(|fitted| fitted.map(|fitted| -fitted));
+                }
+            }
         }
     }
 
@@ -171,9 +209,6 @@ impl<'a> Fits<'a> {
             lanes::keep_together();
         }
         ldlt::factor_each(gram, width);
-        for (j, pivot) in self.pivots.iter_mut().enumerate() {
-            *pivot = diagonal(gram, j);
-        }
         for side in rows_mut(sides, width) {
             ldlt::forward_one(gram, 0, side);
             ldlt::divide_each(gram, side);
@@ -192,9 +227,9 @@ impl<'a> Fits<'a> {
         for (k, unit) in rows_mut(self.units, width).enumerate() {
             unit.iter_mut().enumerate().for_each(|(j, out)| *out = if j == k { [1.0; LANES] } else { NONE });
             ldlt::forward_one(gram, k, unit);
-            for (side, coefficients) in rows(sides, width).zip(rows_mut(self.coefficients, self.count * width)) {
+            for (side, trends) in rows(sides, width).zip(rows_mut(self.coefficients, self.count * terms.fixed())) {
                 sums_to(&terms.ends, unit, side, |fit, sum| {
-                    if let Some(out) = row_at_mut(coefficients, width, fit).get_mut(k) {
+                    if let Some(out) = row_at_mut(trends, terms.fixed(), fit).get_mut(k) {
                         *out = sum;
                     }
                 });
@@ -252,111 +287,5 @@ impl<'a> Fits<'a> {
         }
         // As good as nothing, of which there is no inverse.
         lanes::each(&weight, |weight| if weight < FAINT { 0.0 } else { weight })
-    }
-
-    /// What the fit leaves of the samples of a colour that it has not seen, about their pixels' means.
-    #[inline(always)]
-    fn judge(&mut self, batch: &Batch<'_>, colour: usize) {
-        let terms = &batch.terms;
-        let (width, fixed) = (terms.columns(), terms.fixed());
-        let Part { gram, sides, squares } = batch.within.part(colour);
-        for (value, (whole, sides)) in squares.iter().zip(rows(sides, width)).enumerate() {
-            for fit in 0..terms.ends.len() {
-                let mut left = *whole;
-                let coefficients = self.coefficients(terms, value, fit);
-                for (j, b) in coefficients.iter().enumerate().skip(fixed) {
-                    let (Some((square, row)), Some(side)) = (row(gram, j).split_last(), sides.get(j)) else { break };
-                    // b_j (G_jj b_j + 2 (sum_k G_jk b_k - r_j)).
-                    let mut sum = side.map(|side| -side);
-                    for (product, other) in from(row, fixed).iter().zip(from(coefficients, fixed)) {
-                        sum = lanes::plus_product(sum, *product, *other);
-                        lanes::keep_together();
-                    }
-                    let sum = lanes::plus_product(sum.map(|sum| sum + sum), *square, *b);
-                    left = lanes::plus_product(left, sum, *b);
-                }
-                self.set_within(batch, (value, colour), fit, &left);
-            }
-        }
-    }
-
-    /// Corrects a block by the fit. The fixed columns follow the signal, and correct nothing.
-    #[inline(always)]
-    fn apply(&mut self, batch: &Batch<'_>, block: usize) {
-        let terms = &batch.terms;
-        let functions = row_at(batch.functions, terms.functions, block);
-        let places = row_at(batch.places, terms.fixed(), block);
-        for value in 0..self.values {
-            for fit in 0..terms.ends.len() {
-                let own = from(self.coefficients(terms, value, fit), terms.fixed());
-                let mut fitted = combine([NONE; AT_ONCE], functions, own);
-                for (axis, own) in places.iter().skip(1).zip(rows(from(own, terms.functions), terms.moving)) {
-                    let slope = combine([NONE; AT_ONCE], functions, own);
-                    for row in 0..AT_ONCE {
-                        fitted[row] = lanes::plus_product(fitted[row], axis[row], slope[row]);
-                    }
-                }
-                let corrections = row_at_mut(self.corrections, self.count, block * self.values + value);
-                if let Some(out) = corrections.get_mut(fit) {
-                    *out = fitted.map(|fitted| fitted.map(|fitted| -fitted));
-                }
-            }
-        }
-    }
-
-    /// Corrects a block by a fit that has seen the pixels' one sample, which is left out in closed form. With x its
-    /// columns, h = x'A^-1 x and e its residual, the fit to the others has coefficients b - A^-1 x e / (1 - h). With
-    /// z = L^-1 x, h = z'D^-1 z and x'b = z'D^-1 L^-1 r, where A b = r: sums over each candidate's columns.
-    #[inline(always)]
-    fn leave_block(&mut self, batch: &Batch<'_>, block: usize) {
-        let terms = &batch.terms;
-        let (width, fixed) = (terms.columns(), terms.fixed());
-        let places = row_at(batch.places, fixed, block);
-        let inside = at(batch.inside, block);
-        batch.put_pixels(block, false, self.solved, &mut []);
-        let Part { gram, sides, .. } = self.system.part(0);
-        ldlt::forward_each(gram, 0, self.solved);
-        let mut leverage = [NONE; AT_ONCE];
-        // A^-1 x of the fixed columns, and x'b of each value.
-        let mut shares = [[NONE; AT_ONCE]; MAX_FIXED];
-        let mut fitted = [[NONE; AT_ONCE]; 2 * Config::MAX_CHANNELS];
-        let mut begin = 0;
-        for (fit, &end) in terms.ends.iter().enumerate() {
-            let solved = part(self.solved, begin, end - begin);
-            for (z, pivot) in solved.iter().zip(from(self.pivots, begin)) {
-                for row in 0..AT_ONCE {
-                    leverage[row] = lanes::plus_product(leverage[row], product(&z[row], pivot), z[row]);
-                }
-                lanes::keep_together();
-            }
-            let rows_of_sums = rows(self.units, width).chain(rows(sides, width));
-            for (sum, row) in shares.iter_mut().take(fixed).chain(fitted.iter_mut()).zip(rows_of_sums) {
-                *sum = combine(*sum, solved, from(row, begin));
-            }
-            begin = end;
-            let mut reach = leverage;
-            for (place, share) in places.iter().zip(&shares) {
-                for row in 0..AT_ONCE {
-                    reach[row] = lanes::minus_product(reach[row], place[row], share[row]);
-                }
-            }
-            for (value, fitted) in fitted.iter().enumerate().take(self.values) {
-                let trend = row_at(self.coefficients, width, value * self.count + fit);
-                let trend = combine([NONE; AT_ONCE], places, first(trend, fixed));
-                let mean = at(row_at(batch.means, self.values, block), value);
-                let corrections = row_at_mut(self.corrections, self.count, block * self.values + value);
-                let Some(out) = corrections.get_mut(fit) else { return };
-                for row in 0..AT_ONCE {
-                    let residual = minus(&mean[row], &fitted[row]);
-                    // A pixel that no fit is made to is corrected by the fit to all.
-                    let residual = if batch.leaves_out { only(&inside[row], &residual) } else { residual };
-                    for l in 0..LANES {
-                        let left = Real::max(1.0 - leverage[row][l], SINGULAR);
-                        out[row][l] = trend[row][l] - fitted[row][l] + reach[row][l] * (residual[l] / left);
-                    }
-                    lanes::keep_together();
-                }
-            }
-        }
     }
 }

@@ -39,6 +39,7 @@ mod passes;
 mod pixels;
 mod products;
 mod read;
+mod seen;
 mod several;
 mod sliced;
 mod slices;

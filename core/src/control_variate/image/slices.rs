@@ -10,19 +10,19 @@
 //! nothing ([`Fits::weigh`](super::fit::Fits)). For independent samples coefficients are then too small by a
 //! factor that is known.
 
-use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED};
-use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, empty, minus, only, plus, product, sums_to};
+use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, empty, minus, plus, product, sums_to};
+use super::seen::{SUMS, Seen};
 use super::several::Several;
-use super::terms::{SINGULAR, Terms, scale};
+use super::terms::{Terms, scale};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
 use crate::matrix::{
-    at, copy, diagonal, first_mut, from, halves_mut, packed_len, row, row_at, row_at_mut, row_mut, split_at,
+    at, copy, diagonal, first_mut, halves_mut, packed_len, row, row_at, row_at_mut, row_mut, split_at,
 };
 use crate::real::Real;
-use crate::rows::{first, halves, part, rows, rows_mut};
+use crate::rows::{halves, part, rows, rows_mut};
 use core::ops::Range;
 
 /// Fits of candidates that have as many own columns of each slice.
@@ -315,80 +315,33 @@ impl<'a> Apart<'a> {
         }
     }
 
-    /// Corrects a block by the fit to the other pixels; see `Fits::leave_block`.
+    /// Corrects a block by the fits to the other pixels: see [`Seen::correct`], whose sums begin with the own columns.
     #[inline(always)]
     fn leave_own(&mut self, batch: &Batch<'_>, block: usize, fits: Range<usize>, corrections: &mut [Four]) {
-        let (terms, values, count) = (&batch.terms, batch.values, batch.terms.ends.len());
+        let (terms, values) = (&batch.terms, batch.values);
         let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(batch));
-        let places = row_at(batch.places, fixed, block);
         batch.put_pixels(block, false, self.columns, &mut []);
-        let (Some(slices), Some(inside)) = (batch.slices.get(block), batch.inside.get(block)) else { return };
-        for (line, slices) in slices.iter().enumerate() {
-            let slices = slices.map(|slice| slice as usize);
-            gather(self.gathered, &slices.map(|slice| row_at(self.blocks, len, slice)));
-            // Of each value x'b, and A^-1 x of the fixed columns: see `Fits::leave_block`.
-            let (mut leverage, mut sums) = (NONE, [NONE; 2 * Config::MAX_CHANNELS + MAX_FIXED]);
-            for j in 0..own + width {
-                let (source, start) = match j.checked_sub(own) {
-                    None => (terms.source(j).0, packed_len(j)),
-                    Some(shared) => (shared, packed_len(own) + shared * own),
-                };
-                let Some((before, out)) = split_at(self.solved, j) else { return };
-                let (of_slice, of_border) = halves(before, own.min(j));
-                let own_row = first(from(self.gathered, start), of_slice.len());
-                let z = lanes::minus_products(at(self.columns, source)[line], of_slice, own_row);
-                *out = lanes::minus_products(
-                    z,
-                    of_border,
-                    first(row(self.border, j.saturating_sub(own)), of_border.len()),
-                );
-                if j < own {
-                    let scaled = product(out, &at(self.gathered, start + j));
-                    leverage = lanes::plus_product(leverage, scaled, *out);
-                    for (row, sum) in sums.iter_mut().enumerate().take(values + fixed) {
-                        let entry = packed_len(own) + (width + row) * own + j;
-                        *sum = lanes::plus_product(*sum, at(self.gathered, entry), *out);
-                    }
+        let (mut leverage, mut sums) = ([NONE; AT_ONCE], [[NONE; AT_ONCE]; SUMS]);
+        for (line, slices) in at(batch.slices, block).iter().enumerate() {
+            gather(self.gathered, &slices.map(|slice| row_at(self.blocks, len, slice as usize)));
+            let (triangle, lines) = halves(self.gathered, packed_len(own));
+            let (of_columns, of_sums) = halves(lines, width * own);
+            let solved = first_mut(self.solved, own);
+            for j in 0..own {
+                let Some((before, z)) = split_at(solved, j) else { return };
+                *z = lanes::minus_products(at(self.columns, terms.source(j).0)[line], before, row(triangle, j));
+                let scaled = product(z, &diagonal(triangle, j));
+                leverage[line] = lanes::plus_product(leverage[line], scaled, *z);
+                for (sum, row) in sums.iter_mut().take(values + fixed).zip(rows(of_sums, own)) {
+                    sum[line] = lanes::plus_product(sum[line], at(row, j), *z);
                 }
             }
-            let of_border = self.solved.get(own..own + width).unwrap_or_default();
-            let mut begin = 0;
-            for (index, fit) in fits.clone().enumerate() {
-                let end = at(&terms.ends, fit);
-                let solved = part(of_border, begin, end - begin);
-                for (z, b) in solved.iter().zip(begin..) {
-                    leverage = lanes::plus_product(leverage, product(z, &diagonal(self.border, b)), *z);
-                }
-                for (sum, side) in sums.iter_mut().take(values + fixed).zip(rows(self.sides, width)) {
-                    for (z, entry) in solved.iter().zip(from(side, begin)) {
-                        *sum = lanes::plus_product(*sum, *entry, *z);
-                        lanes::keep_together();
-                    }
-                }
-                begin = end;
-                let (of_values, shares) = halves(&sums, values);
-                let mut reach = leverage;
-                for (place, share) in places.iter().zip(shares) {
-                    reach = lanes::minus_product(reach, place[line], *share);
-                }
-                for (value, fitted) in of_values.iter().enumerate() {
-                    let mut trend = NONE;
-                    let coefficients = row_at(self.trends, fixed, value * fits.len() + index);
-                    for (place, coefficient) in places.iter().zip(coefficients) {
-                        trend = lanes::plus_product(trend, place[line], *coefficient);
-                    }
-                    let residual = minus(&at(row_at(batch.means, values, block), value)[line], fitted);
-                    // A pixel that no fit is made to is corrected by the fit to all.
-                    let residual = if batch.leaves_out { only(&inside[line], &residual) } else { residual };
-                    let corrections = row_at_mut(corrections, count, block * values + value);
-                    let Some(out) = corrections.get_mut(fit) else { return };
-                    for l in 0..LANES {
-                        let left = Real::max(1.0 - leverage[l], SINGULAR);
-                        out[line][l] = trend[l] - fitted[l] + reach[l] * (residual[l] / left);
-                    }
-                    lanes::keep_together();
-                }
+            for (column, row) in self.columns.iter_mut().zip(rows(of_columns, own)) {
+                column[line] = lanes::minus_products(column[line], solved, row);
             }
         }
+        let (of_values, of_units) = halves(self.sides, values * width);
+        let seen = Seen { factors: self.border, of_values, of_units, trends: self.trends };
+        seen.correct(batch, block, fits, first_mut(self.columns, width), (leverage, sums), corrections);
     }
 }
