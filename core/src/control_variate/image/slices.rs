@@ -329,7 +329,8 @@ impl<'a> Apart<'a> {
             let solved = first_mut(self.solved, own);
             for j in 0..own {
                 let Some((before, z)) = split_at(solved, j) else { return };
-                *z = lanes::minus_products(at(self.columns, terms.source(j).0)[line], before, row(triangle, j));
+                let l = part(triangle, packed_len(j), j);
+                *z = lanes::minus_products(at(self.columns, terms.source(j).0)[line], before, l);
                 let scaled = product(z, &diagonal(triangle, j));
                 leverage[line] = lanes::plus_product(leverage[line], scaled, *z);
                 for (sum, row) in sums.iter_mut().take(values + fixed).zip(rows(of_sums, own)) {
