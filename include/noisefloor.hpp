@@ -738,7 +738,7 @@ public:
         : state_(nf_tile_sampler_pixel(&from, x, y, frame, index))
     {
     }
-    tile_sampler(nf_tile &&, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t) = delete;
+    tile_sampler(const nf_tile &&, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t) = delete;
     explicit tile_sampler(const nf_tile_sampler &state) noexcept : state_(state) {}
 
     [[nodiscard]] tile_sampler domain(std::uint32_t key) const noexcept
@@ -789,8 +789,8 @@ public:
     using result_type = std::uint32_t;
     explicit rng(std::uint64_t seed) noexcept { nf_rng_seed(&state_, seed); }
     explicit rng(const nf_rng &state) noexcept : state_(state) {}
-    static constexpr result_type min() noexcept { return 0; }
-    static constexpr result_type max() noexcept { return UINT32_MAX; }
+    static constexpr result_type (min)() noexcept { return 0; }
+    static constexpr result_type (max)() noexcept { return UINT32_MAX; }
     result_type operator()() noexcept { return nf_rng_next(&state_); }
     float uniform() noexcept { return nf_rng_uniform(&state_); }
     void fill(span<float> out) noexcept

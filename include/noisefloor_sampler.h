@@ -10,10 +10,13 @@
  *     nfs s = nfs_domain(nfs_pixel(x, y, 0u, index), LIGHT);
  *     nfs_floats u = nfs_draw2(s);      // u.x, u.y in [0, 1)
  *
- * GPUs read faster what is stored elsewhere for each pixel of a row: entry i at i ^ (i >> 6 & 63u).
+ * GPUs read faster what is stored elsewhere for each pixel of a row: entry i at spread(i) = i ^ (i >> 6 & 63u). So
+ * store it there, and define NOISEFLOOR_TABLE(i) as table[spread(i)].
  *
- * In OpenCL C and Metal, which have no global buffers, there is nothing to define, and the table is the last argument
- * of a draw: nfs_draw2(s, table), `global` or `device`.
+ * In OpenCL C and Metal, which have no global buffers, the table is the last argument of a draw, `global` or `device`:
+ * nfs_draw2(s, table). It is called `table` in NOISEFLOOR_TABLE, too, which without a definition is table[i].
+ *
+ * For HLSL by another compiler than DXC, glslang say, define NFS_HLSL.
  *
  * Functions and arguments are those of noisefloor.h. State is 16 bytes. GLSL needs version 400 or ES 310, there with
  * a table of highp uint.
@@ -21,7 +24,8 @@
 #ifndef NOISEFLOOR_SAMPLER_H
 #define NOISEFLOOR_SAMPLER_H
 
-#if defined(__HLSL_VERSION) || defined(__hlsl_dx_compiler)
+#if defined(NFS_HLSL) || defined(__HLSL_VERSION) || defined(__hlsl_dx_compiler)
+#undef NFS_HLSL
 #define NFS_HLSL
 #elif defined(GL_core_profile) || defined(GL_compatibility_profile) || defined(GL_ES)
 #define NFS_GLSL
@@ -30,12 +34,10 @@
 #if defined(NFS_HLSL)
 #define NFS_FUNCTION
 #define NFS_REVERSE(a) reversebits(a)
-#define NFS_FLOAT(a) float(a)
 typedef uint nfs_uint;
 #elif defined(NFS_GLSL)
 #define NFS_FUNCTION
 #define NFS_REVERSE(a) bitfieldReverse(a)
-#define NFS_FLOAT(a) float(a)
 #define NFS_INSERT(low, high, at, bits) bitfieldInsert(low, high, at, bits)
 #define NFS_SIGN(a, k) uint(bitfieldExtract(int(a), k, 1))
 /* In ES, fragment shaders have less by default. */
@@ -44,17 +46,14 @@ typedef uint nfs_uint;
 #elif defined(__METAL_VERSION__)
 #define NFS_FUNCTION static inline
 #define NFS_REVERSE(a) metal::reverse_bits(a)
-#define NFS_FLOAT(a) float(a)
 #define NFS_BUFFER device const uint
 typedef uint nfs_uint;
-#elif defined(__OPENCL_VERSION__)
+#elif defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__) || defined(__OPENCL_CPP_VERSION__)
 #define NFS_FUNCTION static inline
-#define NFS_FLOAT(a) (float)(a)
 #define NFS_BUFFER __global const uint
 typedef uint nfs_uint;
 #elif defined(__CUDACC__) || defined(__HIPCC__)
 #define NFS_FUNCTION static inline __host__ __device__
-#define NFS_FLOAT(a) (float)(a)
 #if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__)
 #define NFS_REVERSE(a) __brev(a)
 #endif
@@ -62,7 +61,6 @@ typedef unsigned int nfs_uint;
 #else
 #include <stdint.h>
 #define NFS_FUNCTION static inline
-#define NFS_FLOAT(a) (float)(a)
 #if defined(__clang__)
 #define NFS_REVERSE(a) __builtin_bitreverse32(a)
 #endif
@@ -79,7 +77,9 @@ typedef uint32_t nfs_uint;
 #if defined(NFS_BUFFER)
 #define NFS_TABLE , NFS_BUFFER *table
 #define NFS_GIVEN , table
+#if !defined(NOISEFLOOR_TABLE)
 #define NOISEFLOOR_TABLE(i) table[i]
+#endif
 #else
 #define NFS_TABLE
 #define NFS_GIVEN
@@ -87,6 +87,12 @@ typedef uint32_t nfs_uint;
 
 #if !defined(nfs_float)
 #define nfs_float float
+#endif
+
+#if defined(__cplusplus) || defined(NFS_HLSL) || defined(NFS_GLSL)
+#define NFS_FLOAT(a) float(a)
+#else
+#define NFS_FLOAT(a) (float)(a)
 #endif
 
 /* One sample of one pixel. */

@@ -35,7 +35,7 @@ extern "C" {
 #define NF_SOLVER_SQUARE_ROOT 2 // Solver: Givens rotations, for badly placed samples. Only with NF_CV_LEAST_SQUARES.
 #define NF_SOLVER_DUAL 3 // Solver: the n x n system of at most 4096 samples. Not for streaming.
 
-#define NF_RIDGE_AUTO (-1.0f) // For `ridge`: of a few strengths the one with the smallest leave-one-out error.
+#define NF_RIDGE_AUTO (-1.0f) // For `ridge`: the best of a few by leave-one-out errors; biases NF_CV_LEAVE_ONE_OUT.
 
 #define NF_COLOR_PER_CHANNEL 0 // Each channel is regressed on its own, with one factorisation. The default.
 // Rec. 709 luminance is regressed and scales the plain mean of 3 channels (section 4.3). Standard errors are the
@@ -81,8 +81,8 @@ typedef struct nf_cv_config {
     uint32_t color; // NF_COLOR_*
     // Runs of samples, in order, for NF_CV_K_FOLD (images have two) and streaming NF_CV_ROBUST: 2 to 16; 0 means 4.
     uint32_t folds;
-    // Ridge strength per sample (at least 1e-12, in float 1e-5), NF_RIDGE_AUTO (not of images), or 0: the default.
-    // NF_CV_GRADIENT_DESCENT, and NF_CV_ROBUST of one integral, do not use it. NF_RIDGE_AUTO biases leave-one-out.
+    // Ridge strength per sample, raised to 1e-12, in float 1e-5; 0, and NF_RIDGE_AUTO of images, streams and
+    // NF_CV_INCREMENTAL: the default. NF_CV_GRADIENT_DESCENT, and NF_CV_ROBUST of one integral, do not use it.
     float ridge;
 } nf_cv_config;
 

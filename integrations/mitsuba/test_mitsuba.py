@@ -227,6 +227,62 @@ class Recorded(unittest.TestCase):
                 it.seed(3, width * height * 4)
                 np.testing.assert_array_equal(np.array(it.next_1d()), expected)
 
+    def sensors(self, *kinds, **more):
+        """A scene with a sensor for each film and type, whose equal samplers are one."""
+        scene = mi.cornell_box()
+        scene["integrator"] = {"type": "path", "max_depth": 4}
+        sensor = scene.pop("sensor") | {"sampler": {"type": "noisefloor"}}
+        for k, (width, height, own) in enumerate(kinds):
+            film = {"type": "hdrfilm", "width": width, "height": height, "rfilter": {"type": "box"}}
+            scene[f"sensor{k}"] = {**sensor, "film": film, **own}
+        return nf.prepare(mi.load_dict(scene, **more))
+
+    def test_sensors_that_share_a_sampler(self):
+        kinds = (16, 16, {}), (24, 8, {}), (8, 8, {})
+        scene, apart = self.sensors(*kinds), self.sensors(*kinds, optimize=False)
+        self.assertIs(scene.sensors()[0].sampler(), scene.sensors()[1].sampler())
+        for k in (0, 1, 2, 0):
+            for spp in (1, 4, 6):
+                ours, theirs = (np.array(mi.render(s, sensor=k, spp=spp, seed=3)) for s in (scene, apart))
+                np.testing.assert_array_equal(ours, theirs)
+        lens = {"type": "thinlens", "aperture_radius": 0.1, "focus_distance": 3.0}
+        for kinds in (((16, 8, {}), (8, 16, {})), ((8, 8, {}), (8, 8, lens))):
+            scene = self.sensors(*kinds)
+            with self.assertRaises(RuntimeError) as refused:
+                mi.render(scene, sensor=0, spp=4)
+            self.assertIn("load the scene with `optimize=False`", str(refused.exception.__cause__))
+            mi.render(self.sensors(*kinds, optimize=False), sensor=0, spp=4)
+        # Alike, whatever the number.
+        scene = self.sensors((8, 8, {}), (8, 8, {"near_clip": 0.5}))
+        self.assertEqual(np.array(mi.render(scene, sensor=1, spp=4)).shape, (8, 8, 3))
+
+    def test_crops_make_up_the_film(self):
+        for border, rfilter in ((False, "box"), (True, "gaussian")):
+            film = {"sample_border": border, "rfilter": {"type": rfilter}}
+            crop = {"crop_offset_x": 5, "crop_offset_y": 3, "crop_width": 12, "crop_height": 9}
+            films = [{"type": "hdrfilm", "width": 24, "height": 20, **film, **more} for more in ({}, crop)]
+            whole, part = (np.array(mi.render(self.sensors((0, 0, {"film": f})), spp=4, seed=2)) for f in films)
+            # A path whose ray touches an edge may go elsewhere.
+            same = np.isclose(part, whole[3:12, 5:17], rtol=1e-3, atol=1e-4).all(-1).mean()
+            self.assertGreater(same, 0.98)
+
+    def test_a_seed_of_its_own_is_added(self):
+        one = sampler(8, sample_count=4, seed=2**32 - 1)
+        for it in (one, one.clone(), one.fork()):
+            it.seed(6, 8 * 8 * 4)
+            np.testing.assert_array_equal(np.array(it.next_1d()), fill([0], 8, 8, 4, 5).reshape(-1, 2)[:, 0])
+
+    def test_options_of_other_types_are_refused(self):
+        for more, why in (
+            ({"white": "false"}, "white is 'false': a boolean is expected"),
+            ({"lens": 1.0}, "lens is 1.0: a boolean"),
+            ({"width": 8.5}, "width is 8.5: an integer"),
+            ({"height": -1}, "height is -1: it must be 0 to"),
+            ({"whit": True}, "whit"),
+        ):
+            with self.assertRaisesRegex(RuntimeError, why):
+                mi.load_dict({"type": "noisefloor", **more})
+
     def test_samplers_keep_no_film_alive(self):
         gc.collect()
         before, scene = len(_sampler._films), box()
@@ -320,11 +376,11 @@ class Fits(unittest.TestCase):
         mi.set_variant(VARIANTS[0])
         nf.register()
 
-    def fits(self, depth=6, width=24, height=20, scene=None, inner="path", film=(), **more):
+    def fits(self, depth=6, width=24, height=20, scene=None, inner="path", film=(), sampler=(), **more):
         scene = scene or mi.cornell_box()
         pixels = {"type": "hdrfilm", "width": width, "height": height, "rfilter": {"type": "box"}}
         film = pixels | {"pixel_format": "luminance" if mi.is_monochromatic else "rgb"} | dict(film)
-        scene["sensor"] = {**scene["sensor"], "film": film, "sampler": {"type": "noisefloor"}}
+        scene["sensor"] = {**scene["sensor"], "film": film, "sampler": {"type": "noisefloor", **dict(sampler)}}
         scene["integrator"] = {"type": inner, "max_depth": depth} if isinstance(inner, str) else inner
         plain = nf.prepare(mi.load_dict(scene))
         scene["integrator"] = {"type": "noisefloor_fits", "inner": scene["integrator"], **more}
@@ -399,6 +455,19 @@ class Fits(unittest.TestCase):
         self.assertEqual(len(said), 1)
         self.assertIn(" 2 samples were not finite", said[0][1])
         np.testing.assert_array_equal(found, np.array(mi.render(self.fits(inner=clean)[1], spp=4)))
+
+    def test_kept_numbers_of_a_crop_and_a_seed(self):
+        film = {"crop_offset_x": 3, "crop_offset_y": 2, "crop_width": 9, "crop_height": 7}
+        _, fitted = self.fits(film=film, sampler={"seed": 2})
+        sensor, seen = fitted.sensors()[0], []
+        with unittest.mock.patch.object(_fits, "image_estimate", side_effect=lambda u, *_, **__: seen.append(u)):
+            with self.assertRaises(RuntimeError):
+                mi.render(fitted, spp=4, seed=3)
+        one = sensor.sampler().clone()
+        one.seed(3, 9 * 7 * 4)
+        _, drawn = one.next_2d(), np.array(one.next_2d()).T.reshape(7, 9, 4, 2)
+        np.testing.assert_array_equal(seen[0], drawn)
+        np.testing.assert_array_equal(drawn[0, 0], fill([2], 24, 20, 4, 5).reshape(20, 24, 4, 2)[2, 3])
 
     def test_kept_numbers_are_those_that_were_drawn(self):
         one = sampler(9, 7, sample_count=4)
@@ -485,7 +554,11 @@ class Fits(unittest.TestCase):
                 mi.render(nf.prepare(mi.load_dict(scene)), spp=spp)
             self.assertIn(why, f"{refused.exception} {refused.exception.__cause__}")
         for inner, why in (({}, "holds one integrator, not 0"), ({"inner": {"type": "prb"}}, "such as path, not PRB"),
-                           ({"inner": {"type": "ptracer"}}, "such as path, not")):  # fmt: skip
+                           ({"inner": {"type": "ptracer"}}, "such as path, not"),
+                           ({"inner": path, "ordr": 5}, "ordr"), ({"inner": path, "order": 8}, "order is 8: it must"),
+                           ({"inner": path, "order": 2.7}, "order is 2.7: an integer is expected"),
+                           ({"inner": path, "stride": 0}, "stride is 0: it must be 1 to 8"),
+                           ({"inner": path, "known": "false"}, "known is 'false': a boolean")):  # fmt: skip
             with self.assertRaises((ValueError, RuntimeError)) as refused:
                 mi.load_dict({**scene, "integrator": {"type": "noisefloor_fits", **inner}})
             self.assertIn(why, f"{refused.exception} {refused.exception.__cause__}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, SupportsIndex
 
 import numpy
 from numpy.typing import NDArray
@@ -78,7 +78,7 @@ class Table:
             self._table.uniform_fraction = value
 
     def draw(
-        self, batch: int | tuple[int, ...], method: str = "iid"
+        self, batch: SupportsIndex | tuple[SupportsIndex, ...], method: str = "iid"
     ) -> tuple[NDArray[numpy.int64], NDArray[numpy.float32]]:
         """Draws items in proportion to importance.
 

@@ -66,6 +66,7 @@ def test_its_types_are_the_packages(tmp_path):
         loop = source
         sources.append("import numpy as np\nimport noisefloor\n" + source)
     sources.append("import noisefloor.mitsuba as nf\nnf.register()\nnf.prepare(None)\n")
+    sources.append("import numpy as np\nimport noisefloor\nnoisefloor.Table(10).draw(np.int64(3))\n")
     wrong = "import noisefloor\nnoisefloor.Table(10).draw('10')\nnoisefloor.estimate([], []).variance\n"
     said = check_types(tmp_path, *sources, wrong)
     assert 'has incompatible type "str"' in said and 'has no attribute "variance"' in said

@@ -235,6 +235,13 @@ def test_images_of_any_shape_type_stride_and_number_of_threads(size, frames, n, 
     assert all(numpy.array_equal(a, b, equal_nan=True) for a, b in zip(estimate, again))
 
 
+def test_windows_are_numbers_of_any_type():
+    u, f, _ = image()
+    expected = noisefloor.image_estimate(u, f, window=8, threads=32).mean
+    for kind in (numpy.int8, numpy.uint8):
+        assert numpy.array_equal(noisefloor.image_estimate(u, f, window=kind(8), threads=32).mean, expected)
+
+
 def test_edges_of_shadows():
     u, f, _ = image(4)
     shadowed = numpy.where(u[..., 0] + 0.3 * u[..., 1] < 0.6, f, 0)

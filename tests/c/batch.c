@@ -122,6 +122,28 @@ static void combinations(void)
     memory_free(&work);
 }
 
+/* Ridges that have the bits of others. */
+static void ridges(void)
+{
+    static const struct {
+        uint32_t estimator;
+        float ridge, same;
+    } of[] = {{NF_CV_LEAVE_ONE_OUT, 1e-20f, 1e-13f}, {NF_CV_INCREMENTAL, NF_RIDGE_AUTO, 0.0f}};
+    memory work = memory_new(1 << 20);
+    nf_estimate out, expected;
+    size_t i;
+    fill_linear(f, u, N, 2, 1);
+    for (i = 0; i < sizeof of / sizeof *of; ++i) {
+        nf_cv_config config = make_config(2, 2, 1, of[i].estimator);
+        config.ridge = of[i].ridge;
+        CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
+        config.ridge = of[i].same;
+        CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &expected), NF_OK);
+        CHECK(memcmp(&out, &expected, sizeof out) == 0);
+    }
+    memory_free(&work);
+}
+
 static void controls(void)
 {
     nf_cv_config config = make_config(2, 1, 1, NF_CV_LEAST_SQUARES);
@@ -290,6 +312,7 @@ int main(void)
         errors(estimate_one, estimator);
     errors(descent, NF_CV_GRADIENT_DESCENT);
     combinations();
+    ridges();
     controls();
     many_integrals();
     sample_errors();

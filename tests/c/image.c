@@ -50,8 +50,10 @@ static void defaults(void)
     image.frames = 1;
     image.window = 8;
     image.stride = 4;
+    config.ridge = NF_RIDGE_AUTO;
     estimate(&config, &image, N, out);
     CHECK(memcmp(out, expected, sizeof out) == 0);
+    config.ridge = 0.0f;
     for (i = 0; i < PIXELS; ++i)
         CHECK(out[i].samples == N && out[i].mean[2] == 0.0f && out[i].std_error[3] == 0.0f);
 

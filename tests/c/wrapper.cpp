@@ -1,13 +1,19 @@
 // noisefloor.hpp: the same results as the C functions, lengths checked, errors thrown or returned. Compiled with and
 // without exceptions; nothing in the wrapper may allocate, which the replaced operator new checks.
-#include "check.h"
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <new>
 #include <random>
 #include <vector>
+// Windows' headers have such.
+#define min(a, b) ((a) < (b) ? (a) : (b))
+#define max(a, b) ((a) > (b) ? (a) : (b))
+#include "check.h"
+#undef min
+#undef max
 
 namespace nf = noisefloor;
 
@@ -342,7 +348,9 @@ static void tiles()
     CHECK(drawn[3] == expected[3] && drawn[4] == 0.0f);
     nf_tile_sampler_draw(nf_tile_sampler_scramble(nf_tile_sampler_domain(pixel.state(), 7), 9), 3, expected);
     CHECK(child.draw<3>()[2] == expected[2]);
-    static_assert(!std::is_constructible_v<nf::tile_sampler, nf::tile, unsigned, unsigned, unsigned, unsigned>,
+    using u32 = std::uint32_t;
+    static_assert(!std::is_constructible_v<nf::tile_sampler, nf::tile, u32, u32, u32, u32> &&
+                      !std::is_constructible_v<nf::tile_sampler, const nf::tile, u32, u32, u32, u32>,
                   "a temporary tile ends first");
 
     const nf_tile_sampler both[2] = {pixel.state(), child.state()};

@@ -77,6 +77,18 @@ if(clang)
     endforeach()
 endif()
 
+# OpenCL C and C++ compiled where no device is, for SPIR-V.
+if(clang)
+    set(kernel "${CMAKE_CURRENT_BINARY_DIR}/kernel.cl")
+    file(CONFIGURE OUTPUT "${kernel}" CONTENT "#include \"noisefloor_sampler.h\"
+kernel void draw(global const uint *table, global float *u) { *u = nfs_draw2(nfs_pixel(1u, 2u, 0u, 3u), table).x; }
+")
+    foreach(standard IN ITEMS CL1.2 CL2.0 clc++)
+        add_check(gpu ${standard} "${clang}" -x cl -cl-std=${standard} -Xclang -finclude-default-header -target spir64
+            -Werror -fsyntax-only "-I${root}/include" "${kernel}")
+    endforeach()
+endif()
+
 # Operations of a draw, and Metal.
 find_program(spirv_cross spirv-cross)
 find_program(spirv_opt spirv-opt)

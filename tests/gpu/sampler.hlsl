@@ -6,7 +6,7 @@
     uint first;
 };
 
-#define NFS_HLSL // DXC says so itself
+#define NFS_HLSL // glslang does not say so, DXC does
 #define NOISEFLOOR_TABLE(i) table[i]
 #include "noisefloor_sampler.h"
 #include "sampler_of.h"

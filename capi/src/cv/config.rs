@@ -54,7 +54,7 @@ pub const NF_COLOR_PER_CHANNEL: u32 = 0;
 /// luminance's, scaled alike: they leave out what the colour is uncertain by.
 pub const NF_COLOR_LUMINANCE_RATIO: u32 = 1;
 
-/// For `ridge`: of a few strengths the one with the smallest leave-one-out error.
+/// For `ridge`: the best of a few by leave-one-out errors; biases NF_CV_LEAVE_ONE_OUT.
 pub const NF_RIDGE_AUTO: f32 = -1.0;
 
 /// How to estimate. Zero in any field but dims, order and channels is its default, so that
@@ -100,8 +100,8 @@ pub struct nf_cv_config {
     pub color: u32,
     /// Runs of samples, in order, for NF_CV_K_FOLD (images have two) and streaming NF_CV_ROBUST: 2 to 16; 0 means 4.
     pub folds: u32,
-    /// Ridge strength per sample (at least 1e-12, in float 1e-5), NF_RIDGE_AUTO (not of images), or 0: the default.
-    /// NF_CV_GRADIENT_DESCENT, and NF_CV_ROBUST of one integral, do not use it. NF_RIDGE_AUTO biases leave-one-out.
+    /// Ridge strength per sample, raised to 1e-12, in float 1e-5; 0, and NF_RIDGE_AUTO of images, streams and
+    /// NF_CV_INCREMENTAL: the default. NF_CV_GRADIENT_DESCENT, and NF_CV_ROBUST of one integral, do not use it.
     pub ridge: f32,
 }
 

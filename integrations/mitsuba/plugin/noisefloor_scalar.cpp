@@ -148,7 +148,7 @@ protected:
             if (dr::any(within >= block->size()))
                 continue;
             Point2i place = Point2i(within) + block->offset();
-            Point2i pixel = place - Point2i(film->crop_offset()) + border;
+            Point2i pixel = place + border;
             sampler->start((uint32_t) pixel.x(), (uint32_t) pixel.y(), first);
             for (uint32_t k = 0; k < sample_count && !should_stop(); ++k) {
                 render_sample(scene, sensor, sampler.get(), block, aovs, Vector2f(place), scale);

@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import mitsuba as mi
 
 from . import _fits, _sampler
@@ -29,8 +31,11 @@ def register() -> None:
 def prepare(scene: mi.Scene) -> mi.Scene:
     """Tells the samplers of the scene's sensors which films they are for, and whether there is a lens; returns the
     scene."""
+    # Mitsuba makes equal samplers of several sensors one.
+    sensors: dict[Any, list[mi.Sensor]] = {}
     for sensor in scene.sensors():
-        sampler = sensor.sampler()
-        if hasattr(sampler, "follow"):
-            sampler.follow(sensor)
+        if hasattr(sensor.sampler(), "follow"):
+            sensors.setdefault(sensor.sampler(), []).append(sensor)
+    for sampler, those in sensors.items():
+        sampler.follow(*those)
     return scene

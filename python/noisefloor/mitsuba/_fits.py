@@ -7,9 +7,10 @@ import drjit as dr
 import mitsuba as mi
 import numpy
 
-from .. import image_estimate
+from .. import _c, image_estimate
 from .._sampler import Sampler
 from . import _known
+from ._sampler import option
 
 
 def _rays(sensor, position, sampler=None):
@@ -52,7 +53,8 @@ def kept(sensor, lights, width, height, spp, seed, white=False, scramble=False):
     """The numbers that the fits see: of the point on a light, and of several lights which."""
     before = 2 + 2 * sensor.needs_aperture_sample() + (sensor.shutter_open_time() > 0)
     source = Sampler(frame=seed, white=white, seed=int(scramble))
-    u = source.domain(before).image(width, height, spp, 2)
+    x, y = sensor.film().crop_offset()
+    u = source.domain(before).image(width, height, spp, 2, x=x, y=y)
     if lights == 1:
         return u
     # One number picks the light and is the first of the point on it: it is two.
@@ -111,14 +113,16 @@ def kind():
 
         def __init__(self, props):
             super().__init__(props)
-            found = [props[name] for name in props.keys() if isinstance(props[name], mi.Integrator)]
+            # Not of all: what nobody asks for Mitsuba refuses.
+            found = [props[name] for name, held in props.objects(False) if isinstance(held, mi.Integrator)]
             if len(found) != 1:
                 raise ValueError(f"noisefloor_fits: holds one integrator, not {len(found)}")
             if isinstance(found[0], (mi.CppADIntegrator, mi.AdjointIntegrator)):
                 raise ValueError(f"noisefloor_fits: holds an integrator such as path, not {type(found[0]).__name__}")
             self.inner = found[0]
-            self.order, self.stride = int(props.get("order", 2)), int(props.get("stride", 8))
-            self.known = bool(props.get("known", True))
+            self.order = option(props, "noisefloor_fits", "order", 2, most=_c.MAX_ORDER)
+            self.stride = option(props, "noisefloor_fits", "stride", 8, 1, 8)
+            self.known = option(props, "noisefloor_fits", "known", True)
             # Why `known` was left out, or "".
             self.unknown = ""
 
@@ -149,7 +153,7 @@ def kind():
             sampler.follow(sensor)
             sampler.seed(seed, width * height * spp)
             f, alpha = self.samples(scene, sensor, sampler)
-            lights, first = equally_likely(scene), int(mi.UInt32(seed)[0])
+            lights, first = equally_likely(scene), int((mi.UInt32(seed) + sampler.first)[0])
             u = kept(sensor, lights, width, height, spp, first, sampler.white, sampler.scramble)
             middle = scene.ray_intersect(_rays(sensor, _middles(film))[0])
             more = {}

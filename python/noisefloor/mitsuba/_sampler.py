@@ -4,6 +4,7 @@ The draws are recorded by Dr.Jit, with the bits of nf_sampler_draw(); the librar
 """
 
 import ctypes
+import math
 import weakref
 
 import drjit as dr
@@ -21,7 +22,8 @@ COLUMNS = (0x80000000, 0x40000000, 0xA0000000, 0xD0000000, 0x68000000, 0xFC00000
 # By variant. Not an attribute of the samplers: recorded loops would take it for a part of their state.
 _tables = {}
 
-# By sampler; not attributes, either. Films hold no samplers, so that nothing is kept alive in a circle.
+# By sampler, films and whether there is a lens; not attributes, either. Films hold no samplers, so that nothing is kept
+# alive in a circle.
 _films = weakref.WeakKeyDictionary()
 
 
@@ -117,6 +119,17 @@ def _size(film):
     return tuple(int(length) + border for length in film.crop_size())
 
 
+def option(props, plugin, name, default, least=0, most=2**31 - 1):
+    """A property of the default's type, and of numbers within the range."""
+    value = props.get(name, default)
+    if type(value) is not type(default):
+        kind = "an integer" if type(default) is int else "a boolean"
+        raise ValueError(f"{plugin}: {name} is {value!r}: {kind} is expected")
+    if not least <= value <= most:
+        raise ValueError(f"{plugin}: {name} is {value}: it must be {least} to {most}")
+    return value
+
+
 def kind():
     """The class of samplers of the variant that is set."""
 
@@ -126,16 +139,39 @@ def kind():
 
         def __init__(self, props):
             super().__init__(props)
-            self.white, self.scramble = (bool(props.get(name, False)) for name in ("white", "scramble"))
-            self.lens = bool(props.get("lens", False))
-            self.size = int(props.get("width", 0)), int(props.get("height", 0))
+            names = "white", "scramble", "lens"
+            self.white, self.scramble, self.lens = (option(props, "noisefloor", name, False) for name in names)
+            self.size = tuple(option(props, "noisefloor", name, 0) for name in ("width", "height"))
+            self.corner = 0, 0
+            self.first = option(props, "noisefloor", "seed", 0, most=2**32 - 1)  # the frame of seed 0
             self.per_wave = self.most = 1
             self._clear()
 
-        def follow(self, sensor):
-            """The sensor's film says from now on how large it is."""
-            _films[self] = sensor.film()
-            self.size, self.lens = _size(sensor.film()), sensor.needs_aperture_sample()
+        def follow(self, *sensors):
+            """The film of the sensor that is rendered says from now on how large it is."""
+            _films[self] = list(dict.fromkeys((sensor.film(), sensor.needs_aperture_sample()) for sensor in sensors))
+            self._fit(_films[self][0])
+
+        def _fit(self, of):
+            film, self.lens = of
+            self.size, self.corner = _size(film), tuple(film.crop_offset())
+
+        def _choose(self, films, wavefront_size):
+            """Of several films that which is rendered: nobody says more of it than how many samples it has."""
+            spp = self.sample_count()
+            passes = [(of, *divmod(wavefront_size, math.prod(_size(of[0])))) for of in films]
+            fitting = [of for of, count, rest in passes if count == spp and not rest]
+            # An integrator may take a part of the samples at a time.
+            fitting = fitting or [of for of, count, rest in passes if count and not rest and spp % count == 0]
+            found = set()
+            for of in fitting or films[:1]:
+                self._fit(of)
+                found.add((self.size, self.corner, self.lens))
+            if len(found) > 1:
+                raise ValueError(
+                    "noisefloor: sensors share this sampler, and which of them is rendered cannot be told: they differ "
+                    "in film, crop or lens. Mitsuba makes equal samplers one: load the scene with `optimize=False`"
+                )
 
         def _clear(self):
             self.x, self.y, self.index, self.base, self.dimension = (mi.UInt32(0) for _ in range(5))
@@ -144,9 +180,11 @@ def kind():
         def seed(self, seed, wavefront_size=2**32 - 1):
             super().seed(seed, wavefront_size)
             self._clear()
-            film = _films.get(self)
-            if film is not None:
-                self.size = _size(film)
+            films = _films.get(self, ())
+            if len(films) == 1:
+                self._fit(films[0])
+            elif films:
+                self._choose(films, self.wavefront_size())
             wavefront_size, (width, height) = self.wavefront_size(), self.size
             if wavefront_size == 1 and width * height != 1:  # how Mitsuba frees a sampler's memory
                 return
@@ -160,12 +198,12 @@ def kind():
                 raise ValueError(
                     f"noisefloor: the sampler takes its film for {width} x {height} pixels, and {wavefront_size} "
                     f"samples are no pass over it at {self.sample_count()} samples a pixel. "
-                    f"{prepare if film is None else ''}It draws for the whole film of one sensor: for an integrator "
+                    f"{'' if films else prepare}It draws for the whole film of one sensor: for an integrator "
                     "that also samples something else, as with `guiding_proj` False, use another, independent say"
                 )
             self.most = self.per_wave  # indices are below this
             # Opaque: as a literal it would be part of the kernel, and every seed would compile one.
-            seed = mi.UInt32(seed)
+            seed = mi.UInt32(seed) + self.first
             self.base = dr.select(seed == 0, mi.UInt32(0), _child(mi.UInt32(FRAMES), seed))
             if self.scramble:
                 self.base = _child(self.base ^ SCRAMBLED, 1)
@@ -174,7 +212,8 @@ def kind():
             pixel = wave // self.per_wave
             self.index = wave - pixel * self.per_wave
             row = pixel // width
-            self.x, self.y = (pixel - row * width) & 0xFFFF, row & 0xFFFF
+            x, y = self.corner
+            self.x, self.y = (pixel - row * width + x) & 0xFFFF, (row + y) & 0xFFFF
             if self.white:
                 at = _mix(self.x | (self.y << 16))
                 self.x, self.y = at & 0xFFFF, at >> 16
@@ -191,12 +230,13 @@ def kind():
             props = mi.Properties()
             props["sample_count"] = self.sample_count()
             props["white"], props["scramble"], props["lens"] = self.white, self.scramble, self.lens
+            props["seed"] = self.first
             other = type(self)(props)
             if wavefront_size:
                 # This comes to seed() above, which would refuse the number where the film has changed since.
                 other.size = wavefront_size, 1
                 mi.Sampler.seed(other, 0, wavefront_size)
-            other.size = self.size
+            other.size, other.corner = self.size, self.corner
             if self in _films:
                 _films[other] = _films[self]
             return other
