@@ -8,6 +8,8 @@ use crate::real::Real;
 /// A buffer that is given out piece by piece, front to back. How long it must be is checked once, when it comes in.
 pub(crate) struct Arena<'a, R> {
     rest: &'a mut [R],
+    /// How much was asked for, where that alone is wanted.
+    counted: Option<usize>,
 }
 
 impl<'a, R: Real> Arena<'a, R> {
@@ -16,11 +18,26 @@ impl<'a, R: Real> Arena<'a, R> {
     /// # Errors
     /// [`Error::Memory`] if it has fewer.
     pub(crate) fn new(buffer: &'a mut [R], needed: Option<usize>) -> Result<Self, Error> {
-        if needed.is_some_and(|needed| needed <= buffer.len()) { Ok(Self { rest: buffer }) } else { Err(Error::Memory) }
+        let is_enough = needed.is_some_and(|needed| needed <= buffer.len());
+        if is_enough { Ok(Self { rest: buffer, counted: None }) } else { Err(Error::Memory) }
+    }
+
+    /// One that gives out nothing, and counts what it is asked for.
+    pub(crate) fn count() -> Self {
+        Self { rest: &mut [], counted: Some(0) }
+    }
+
+    /// What was counted; None if that is more than there can be.
+    pub(crate) fn counted(&self) -> Option<usize> {
+        self.counted.filter(|&counted| counted < usize::MAX)
     }
 
     /// The next `len` numbers, with whatever they held.
     pub(crate) fn take(&mut self, len: usize) -> &'a mut [R] {
+        if let Some(counted) = &mut self.counted {
+            *counted = counted.saturating_add(len);
+            return &mut [];
+        }
         debug_assert!(len <= self.rest.len(), "more is taken than was said to be needed");
         let (part, rest) = core::mem::take(&mut self.rest).split_at_mut_checked(len).unwrap_or_default();
         self.rest = rest;
@@ -41,11 +58,11 @@ impl<'a, R: Real> Arena<'a, R> {
 
     /// The next `panels` groups of eight numbers.
     pub(crate) fn take_lanes(&mut self, panels: usize) -> &'a mut [Lanes<R>] {
-        self.take(panels * LANES).as_chunks_mut::<LANES>().0
+        self.take(panels.saturating_mul(LANES)).as_chunks_mut::<LANES>().0
     }
 
     /// The rest of the buffer, to be given out again after the borrow ends.
     pub(crate) fn scratch(&mut self) -> Arena<'_, R> {
-        Arena { rest: self.rest }
+        Arena { rest: self.rest, counted: None }
     }
 }

@@ -62,7 +62,7 @@ impl Subset {
 }
 
 /// Samples whose lengths were checked, read one at a time.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Reader<'a> {
     pub(crate) samples: Samples<'a>,
     n: usize,

@@ -4,11 +4,10 @@
 //! corrected by fits to the others, so are the slots of a block: that of the block's own number.
 
 use super::super::config::Config;
-use super::call::{Call, Layout};
+use super::call::Call;
 use super::groups::{Group, Groups, Place};
 use super::pixels::{Image, MAX_AXES};
 use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Sums, minus, only, product, zip_four};
-use super::sliced::Sliced;
 use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
@@ -18,8 +17,6 @@ use crate::rows::rows;
 
 /// The most numbers of a place.
 pub(super) const MAX_FIXED: usize = 1 + MAX_AXES;
-/// Sums of each slot from which the coefficients of what is known come.
-pub(super) const KNOWN_SUMS: usize = 5;
 /// Uniform coordinates from -1 to 1 times this have unit variance.
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 /// The largest value of a pixel that no fit is made to, in units of the largest that one is made to, is 2 to the power
@@ -42,6 +39,8 @@ pub(super) struct Batch<'a> {
     pub(super) call: &'a Call<'a>,
     pub(super) terms: Terms,
     pub(super) lanes: [Group; LANES],
+    /// How many blocks there are.
+    pub(super) len: usize,
     pub(super) is_joined: bool,
     /// Whether the slots of a block are of one colour.
     pub(super) has_colours: bool,
@@ -75,16 +74,6 @@ pub(super) struct Batch<'a> {
     pub(super) sliced: Sums<'a>,
 }
 
-pub(super) fn blocks(layout: &Layout<'_>, slots: usize) -> usize {
-    if layout.has_colours() { COLOURS * slots.div_ceil(COLOURS * AT_ONCE) } else { slots.div_ceil(AT_ONCE) }
-}
-
-/// How many sums of pixels' means, and how many of what is within pixels, are kept apart.
-fn parts(layout: &Layout<'_>) -> [usize; 2] {
-    let parts = if layout.has_colours() { COLOURS } else { 1 };
-    [parts, if layout.n > 1 { parts } else { 0 }]
-}
-
 /// For each pixel how many functions' means are kept, and how many slices.
 pub(super) fn kept(terms: &Terms, n: usize) -> (usize, usize) {
     match (terms.slices > 0, n) {
@@ -92,24 +81,6 @@ pub(super) fn kept(terms: &Terms, n: usize) -> (usize, usize) {
         (true, 1) => (terms.functions, 1),
         (true, _) => (0, 0),
     }
-}
-
-/// Numbers that a batch of so many slots takes.
-pub(super) fn batch_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
-    let (columns, functions) = (terms.columns(), terms.functions);
-    let (channels, values) = (layout.config.channels, layout.values());
-    let known = if layout.image.has_known() { 2 * (channels + KNOWN_SUMS) } else { 0 };
-    let (kept, apart) = kept(terms, layout.n);
-    let each = 2 + apart + terms.fixed() + 2 * channels + values + kept + known;
-    let summed = terms.of_slices(values, layout.n);
-    let rows = AT_ONCE * (functions + columns + values + values.max(summed));
-    let pixel = Sums::len(kept, values) + kept + 2 * values;
-    let deviations = AT_ONCE * (kept + values) * kept + AT_ONCE * values;
-    let [between, within] = parts(layout);
-    let sliced = between * terms.slices * Sums::len(columns, summed) + Sliced::len(terms.slices, columns, summed);
-    let sums = between * Sums::len(terms.of_means(), values) + within * Sums::len(terms.of_deviations(), values);
-    let sums = sums + sliced + rows + pixel + deviations;
-    blocks(layout, slots).checked_mul(AT_ONCE * each)?.checked_add(sums)?.checked_mul(LANES)
 }
 
 impl Units {
@@ -135,30 +106,33 @@ impl<'a> Batch<'a> {
     pub(super) fn new(call: &'a Call<'a>, terms: Terms, lanes: [Group; LANES], arena: &mut Arena<'a, f32>) -> Self {
         let [Group { len, .. }, ..] = lanes;
         let slots = if call.is_joined() { len.div_ceil(LANES) } else { len };
-        let (columns, channels, values) = (terms.columns(), call.config.channels, call.values());
-        let (blocks, [between, within]) = (blocks(call, slots), parts(call));
-        let known = if call.image.has_known() { channels * blocks * AT_ONCE } else { 0 };
+        // Blocks come by as many as there are colours; sums of each are then apart.
+        let parts = if call.has_colours() { COLOURS } else { 1 };
+        let len = parts * slots.div_ceil(parts * AT_ONCE);
+        let (channels, values, each) = (call.config.channels, call.values(), |count: usize| len.saturating_mul(count));
+        let known = if call.image.has_known() { each(channels * AT_ONCE) } else { 0 };
         let ((kept, apart), summed) = (kept(&terms, call.n), terms.of_slices(values, call.n));
         Self {
             call,
             lanes,
+            len,
             is_joined: call.is_joined(),
             has_colours: call.has_colours(),
             units: [Units { powers: NONE, scales: NONE, offsets: NONE, limits: NONE }; Config::MAX_CHANNELS],
             leaves_out: false,
-            numbers: arena.take_fours(blocks),
-            places: arena.take_fours(blocks * terms.fixed()),
-            inside: arena.take_fours(blocks),
-            ranges: arena.take_lanes(2 * channels * blocks * AT_ONCE).as_chunks_mut().0,
+            numbers: arena.take_fours(len),
+            places: arena.take_fours(each(terms.fixed())),
+            inside: arena.take_fours(len),
+            ranges: arena.take_lanes(each(2 * channels * AT_ONCE)).as_chunks_mut().0,
             coefficients: arena.take_lanes(known),
             integrals: arena.take_lanes(known),
-            slices: arena.take_fours(blocks * apart),
+            slices: arena.take_fours(each(apart)),
             values,
-            means: arena.take_fours(blocks * values),
-            functions: arena.take_fours(blocks * kept),
-            between: Sums::new(between, terms.of_means(), values, arena),
-            within: Sums::new(within, terms.of_deviations(), values, arena),
-            sliced: Sums::new(between * terms.slices, columns, summed, arena),
+            means: arena.take_fours(each(values)),
+            functions: arena.take_fours(each(kept)),
+            between: Sums::new(parts, terms.of_means(), values, arena),
+            within: Sums::new(if call.n > 1 { parts } else { 0 }, terms.of_deviations(), values, arena),
+            sliced: Sums::new(parts * terms.slices, terms.columns(), summed, arena),
             terms,
         }
     }

@@ -45,11 +45,6 @@ impl Choices {
         Self { channels, fits, has_edges, count: (1 + fits) * (layout.values() / channels.max(1)) }
     }
 
-    /// Lanes of workspace.
-    pub(super) fn len(&self) -> usize {
-        self.channels * self.count * (SPREADS + CHOSEN) + AT_ONCE * self.count
-    }
-
     /// Whether a choice is an edge.
     fn is_edge(&self, choice: usize) -> bool {
         self.has_edges && [self.fits, 2 * self.fits + 1].contains(&choice)
@@ -87,8 +82,6 @@ impl Choices {
 
 /// How often is chosen: for all pixels, and for those of each colour; or, as the first two, for either half.
 const CHOSEN: usize = 1 + COLOURS;
-/// Lanes of each choice of [`Spreads`], with those that are needed to make them.
-const SPREADS: usize = 2 * COLOURS + 1 + MAX_FIXED;
 
 /// How far each choice is trusted: of each time that is chosen, channel and choice.
 pub(super) struct Shares<'a> {
@@ -134,6 +127,27 @@ pub(super) struct Spreads<'a> {
     choices: Choices,
 }
 
+/// What [`Spreads`] are made in: for each channel and choice spreads, a sum of squares and the trend; for each choice
+/// an estimate.
+pub(super) struct Room<'a> {
+    spreads: [&'a mut [Four]; 2],
+    squares: &'a mut [Eight],
+    trends: &'a mut [Eight],
+    estimates: &'a mut [Four],
+}
+
+impl<'a> Room<'a> {
+    pub(super) fn new(choices: Choices, fixed: usize, arena: &mut Arena<'a, f32>) -> Self {
+        let all = choices.channels * choices.count;
+        Self {
+            spreads: [arena.take_fours(all), arena.take_fours(all)],
+            squares: arena.take_lanes(all),
+            trends: arena.take_lanes(all * fixed),
+            estimates: arena.take_fours(choices.count),
+        }
+    }
+}
+
 impl<'a> Spreads<'a> {
     /// Of pixels of the colours `taken`.
     #[inline(always)]
@@ -145,13 +159,10 @@ impl<'a> Spreads<'a> {
         arena: &mut Arena<'a, f32>,
     ) -> Self {
         let fixed = batch.terms.fixed();
-        let all = choices.channels * choices.count;
-        let [across, within] = [arena.take_fours(all), arena.take_fours(all)];
-        let [squares, trends] = [arena.take_lanes(all), arena.take_lanes(all * fixed)];
+        let Room { spreads: [across, within], squares, trends, estimates } = Room::new(choices, fixed, arena);
         let sums = [&mut *squares, trends, across.as_flattened_mut(), within.as_flattened_mut()];
         sums.into_iter().flatten().for_each(|sum| *sum = NONE);
         let mut factor = [NONE; packed_len(MAX_FIXED)];
-        let estimates = arena.take_fours(choices.count);
         for block in batch.blocks(taken) {
             let places = row_at(batch.places, fixed, block);
             let Some(inside) = batch.inside.get(block) else { continue };

@@ -6,7 +6,7 @@
 //! kept from 0 to the largest of them. What corrects is h's bilinear interpolant between 17 x 17 points of the two
 //! coordinates, whose integral the trapezoid rule gives: the correction's mean is 0 whatever was fitted.
 
-use super::batch::{Batch, MAX_FIXED, blocks};
+use super::batch::{Batch, MAX_FIXED};
 use super::call::{Call, Layout};
 use super::fit::Fits;
 use super::groups::Place;
@@ -14,7 +14,6 @@ use super::products::{
     AT_ONCE, AT_ONCE_LANES, COLOURS, Colours, Eight, Four, NONE, Sums, add_products, combine, minus, only, plus,
     plus_four, product, times,
 };
-use super::terms::Terms;
 use crate::arena::Arena;
 use crate::basis::MAX_DIMS;
 use crate::control_variate::Config;
@@ -69,18 +68,6 @@ impl Call<'_> {
         let is_other = |(member, sample)| is_lit(member, sample) != is_lit(0, 0);
         self.has_edges() && len >= FEWEST_PIXELS && all.any(is_other)
     }
-}
-
-/// Numbers that the samples of so many slots, and fits to them, take.
-pub(super) fn edges_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
-    if !terms.has_edges {
-        return Some(0);
-    }
-    let (channels, fixed) = (layout.config.channels, terms.fixed());
-    let sums = Sums::len(fixed + FUNCTIONS, 1) + Sums::len(fixed + SLOPES, channels);
-    let once = (COLOURS + 1) * sums + 2 * POINTS * POINTS;
-    let samples = blocks(layout, slots).checked_mul(layout.n)?.checked_mul(AT_ONCE * (3 + channels))?;
-    samples.checked_add(once)?.checked_mul(LANES)
 }
 
 /// The fits to a batch whose groups have lit and dark samples.
@@ -145,20 +132,24 @@ fn logistic(q: &Eight) -> Eight {
 }
 
 impl<'a> Edges<'a> {
-    pub(super) fn new(batch: &Batch<'_>, arena: &mut Arena<'a, f32>) -> Self {
+    /// Of a batch with such, if it is one.
+    pub(super) fn new(batch: &Batch<'_>, arena: &mut Arena<'a, f32>) -> Option<Self> {
+        if !batch.terms.has_edges {
+            return None;
+        }
         let (n, channels, fixed) = (batch.call.n, batch.call.config.channels, batch.terms.fixed());
         let mut sums = |parts| {
             [(FUNCTIONS, 1), (SLOPES, channels)].map(|(own, values)| Sums::new(parts, fixed + own, values, arena))
         };
-        Self {
+        Some(Self {
             sums: sums(COLOURS),
             training: sums(1),
-            samples: arena.take_fours(batch.inside.len() * n * (3 + channels)),
+            samples: arena.take_fours(batch.len.saturating_mul(n).saturating_mul(3 + channels)),
             most: [[NONE; Config::MAX_CHANNELS]; COLOURS],
             shares: arena.take_lanes(POINTS * POINTS),
             // Looked up also where nothing was put there.
             points: arena.zeros(POINTS * POINTS * LANES).as_chunks_mut().0,
-        }
+        })
     }
 
     /// Reads the samples and sums their products.

@@ -4,8 +4,7 @@
 //! are apart.
 
 use super::super::config::Config;
-use super::batch::{Batch, MAX_FIXED, blocks};
-use super::call::Layout;
+use super::batch::{Batch, MAX_FIXED};
 use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, product, sums_to};
 use super::seen::{SUMS, Seen};
 use super::slices::Apart;
@@ -21,11 +20,6 @@ use crate::rows::{first, rows, rows_mut};
 const ROUNDING: f32 = 1e-5;
 /// The least weight of pixels' means but 0.
 const FAINT: f32 = 1e-24;
-
-/// Lanes of [`Fits::within`].
-fn within_len(terms: &Terms, values: usize, n: usize) -> usize {
-    if n > 1 { values * COLOURS * terms.candidates() } else { 0 }
-}
 
 pub(super) struct Fits<'a> {
     /// For each block and value, each candidate's correction of its mean.
@@ -51,24 +45,15 @@ pub(super) struct Fits<'a> {
     pub(super) apart: Option<Apart<'a>>,
 }
 
-/// Numbers that fits take for so many slots.
-pub(super) fn fits_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
-    let (columns, values, count) = (terms.of_deviations(), layout.values(), terms.candidates());
-    let totals = Sums::len(columns, values) + Sums::len(terms.of_means(), values) + within_len(terms, values, layout.n);
-    let once = totals + Apart::len(terms, values, layout.n) + (values * count + MAX_FIXED + AT_ONCE) * columns;
-    let each = AT_ONCE * count * values;
-    blocks(layout, slots).checked_mul(each)?.checked_add(once)?.checked_mul(LANES)?.checked_add(terms.columns())
-}
-
 impl<'a> Fits<'a> {
     pub(super) fn new(batch: &Batch<'_>, arena: &mut Arena<'a, f32>) -> Self {
         let (call, terms) = (batch.call, &batch.terms);
         let (columns, values, count) = (terms.of_deviations(), batch.values, terms.candidates());
         let fits = Self {
-            corrections: arena.take_fours(batch.inside.len() * count * values),
+            corrections: arena.take_fours(batch.len.saturating_mul(count * values)),
             count,
             values,
-            within: arena.take_lanes(within_len(terms, values, call.n)),
+            within: arena.take_lanes(if call.n > 1 { values * COLOURS * count } else { 0 }),
             system: Sums::new(1, columns, values, arena),
             between: Sums::new(1, terms.of_means(), values, arena),
             coefficients: arena.take_lanes(values * count * columns),

@@ -112,11 +112,6 @@ impl Layout<'_> {
         [windows.saturating_mul(pixels), most.saturating_mul(self.record_len()), most, corrections]
     }
 
-    /// Numbers that groups take.
-    pub(super) fn groups_len(&self) -> Option<usize> {
-        self.groups_lens().into_iter().try_fold(0, usize::checked_add)
-    }
-
     pub(super) fn groups<'a>(&self, arena: &mut Arena<'a, f32>) -> Groups<'a> {
         let [list, records, order, corrections] = self.groups_lens();
         Groups {

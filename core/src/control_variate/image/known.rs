@@ -5,7 +5,7 @@
 //! w (a - A)^2 with w = 1 / A^2 and v = sum f / A over sum a / A, the share of the light that arrives: at least 0, at
 //! most v, and at most 1. Where more arrives than is known, v says little.
 
-use super::batch::{Batch, KNOWN_SUMS};
+use super::batch::Batch;
 use super::products::{AT_ONCE, Eight, NONE, minus, only, plus, product};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
@@ -22,7 +22,7 @@ const MOST: f32 = (1_u64 << 20) as f32;
 const FAINT: f32 = 1.0 / MOST;
 
 /// Of some pixels, relative to their integrals, sums of: f; a; (a - A)^2; f (a - A); A (a - A).
-type Sums = [Eight; KNOWN_SUMS];
+type Sums = [Eight; 5];
 
 /// Of one pixel, by its f, its a and a - A.
 fn products([mean, known, apart]: &[Eight; 3]) -> Sums {
@@ -64,15 +64,18 @@ fn coefficient([mean, known, square, mean_product, integral_product]: &Sums) -> 
 }
 
 impl Batch<'_> {
+    /// Sums of each slot alone, and of all before it, if something is known.
+    pub(super) fn related<'a>(&self, arena: &mut Arena<'a, f32>) -> [&'a mut [Sums]; 2] {
+        let slots = if self.call.image.has_known() { self.len.saturating_mul(AT_ONCE) } else { 0 };
+        [0; 2].map(|_| arena.take_lanes(slots.saturating_mul(Sums::default().len())).as_chunks_mut().0)
+    }
+
     /// Computes the coefficient of each slot and channel.
     #[inline(always)]
     pub(super) fn relate(&mut self, arena: &mut Arena<'_, f32>) {
         let call = self.call;
-        let mut arena = arena.scratch();
+        let [own, before] = self.related(&mut arena.scratch());
         let inside = self.inside.as_flattened();
-        // Of each slot alone, and of all before it.
-        let own = arena.take_lanes(KNOWN_SUMS * inside.len()).as_chunks_mut::<KNOWN_SUMS>().0;
-        let before = arena.take_lanes(KNOWN_SUMS * inside.len()).as_chunks_mut::<KNOWN_SUMS>().0;
         let inverse = 1.0 / call.n as f32;
         let [all_coefficients, all_integrals] = [&mut self.coefficients, &mut self.integrals].map(core::mem::take);
         let channels = rows_mut(all_coefficients, inside.len()).zip(rows_mut(all_integrals, inside.len()));
@@ -86,7 +89,7 @@ impl Batch<'_> {
             if self.is_joined {
                 largest = [largest.into_iter().fold(0.0, Real::max); LANES];
             }
-            let mut all = [NONE; KNOWN_SUMS];
+            let mut all = Sums::default();
             for (slot, (own, before)) in own.iter_mut().zip(before.iter_mut()).enumerate() {
                 let inside = at(inside, slot);
                 let (mut mean, mut known) = (NONE, NONE);
@@ -112,7 +115,7 @@ impl Batch<'_> {
                 (*before, all) = (all, both(&all, own));
             }
             // Sums of all pixels but one, without a difference: that would hold digits of the one.
-            let mut others = if self.is_joined { all.map(|sum| other_lanes(&sum)) } else { [NONE; KNOWN_SUMS] };
+            let mut others = if self.is_joined { all.map(|sum| other_lanes(&sum)) } else { Sums::default() };
             let slots = own.iter().zip(before.iter()).zip(coefficients.iter_mut().zip(integrals.iter()));
             for ((own, before), (out, integral)) in slots.rev() {
                 *out = only(integral, &coefficient(&both(before, &others)));

@@ -15,17 +15,34 @@ use crate::real::Real;
 use crate::rows::{first, halves, rows, rows_mut};
 use core::array::from_fn;
 
+/// What samples are read to: they, their pixels, and sums.
+pub(super) struct Loading<'a> {
+    samples: Rows<'a>,
+    pixels: Rows<'a>,
+    deviations: Deviations<'a>,
+    sliced: Sliced<'a>,
+}
+
+impl<'a> Loading<'a> {
+    pub(super) fn new(batch: &Batch<'_>, arena: &mut Arena<'a, f32>) -> Self {
+        let (terms, values, n) = (&batch.terms, batch.values, batch.call.n);
+        let (summed, (kept, _)) = (terms.of_slices(values, n), kept(terms, n));
+        Self {
+            samples: Rows::new(terms.functions, values, arena),
+            pixels: Rows::new(terms.columns(), values.max(summed), arena),
+            deviations: Deviations::new(kept, values, arena),
+            sliced: Sliced::new(terms.slices, terms.columns(), summed, arena),
+        }
+    }
+}
+
 impl Batch<'_> {
     /// Reads all samples and sums their products.
     #[inline(always)]
     pub(super) fn load(&mut self, arena: &mut Arena<'_, f32>) {
-        let (call, values, slices, mut arena) = (self.call, self.values, self.terms.slices, arena.scratch());
+        let (call, values, slices) = (self.call, self.values, self.terms.slices);
         let (columns, functions, fixed) = (self.terms.columns(), self.terms.functions, self.terms.fixed());
-        let (summed, (kept, _)) = (self.terms.of_slices(values, call.n), kept(&self.terms, call.n));
-        let mut samples = Rows::new(functions, values, &mut arena);
-        let mut pixels = Rows::new(columns, values.max(summed), &mut arena);
-        let mut deviations = Deviations::new(kept, values, &mut arena);
-        let mut sliced = Sliced::new(slices, columns, summed, &mut arena);
+        let Loading { mut samples, mut pixels, mut deviations, mut sliced } = Loading::new(self, &mut arena.scratch());
         self.set_units();
         for sums in [&mut self.between, &mut self.within, &mut self.sliced] {
             sums.empty();

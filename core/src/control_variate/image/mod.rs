@@ -56,12 +56,14 @@ use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::LANES;
 use crate::processor::{Portable, Processor};
-use batch::batch_len;
+use batch::Batch;
 use call::{Call, Layout};
-use choice::Choices;
-use edges::edges_len;
-use fit::fits_len;
-use sums::sums_len;
+use choice::{Choices, Room, Shares};
+use edges::Edges;
+use fit::Fits;
+use groups::Group;
+use load::Loading;
+use sums::Band;
 use terms::Terms;
 
 /// Numbers of workspace that [`estimate_image`] needs for `n` samples in each pixel.
@@ -165,19 +167,23 @@ impl<'a> Layout<'a> {
         [rows, self.windows.top(rows - 1) - self.windows.top(0) + self.windows.extent[1]]
     }
 
+    /// Counts what a call takes, by making all of it.
     fn workspace_len(&self) -> Option<usize> {
         // More samples than 32 bits count need more memory than there is.
         u32::try_from(self.pixels.checked_mul(self.n)?).ok()?;
-        let (eights, frames) = (self.eights(), self.windows.frames());
-        let [_, rows] = self.band();
-        let channels = self.config.channels;
-        let sums = eights.checked_mul(rows)?.checked_mul(frames)?.checked_mul(sums_len(channels) * LANES)?;
-        let pixels = self.windows.pixels();
-        let slots = if self.is_joined() { pixels.div_ceil(LANES) } else { pixels };
-        let terms = Terms::new(self, pixels, self.has_edges());
-        let batch = batch_len(self, &terms, slots)?.checked_add(fits_len(self, &terms, slots)?)?;
-        let batch = batch.checked_add(edges_len(self, &terms, slots)?)?;
-        let choices = Choices::new(self, &terms).len().checked_mul(LANES)?;
-        sums.checked_add(self.groups_len()?)?.checked_add(batch)?.checked_add(choices)
+        let call = Call { layout: *self, basis: &Basis::empty(), reader: Reader::default() };
+        let (arena, len) = (&mut Arena::count(), self.windows.pixels());
+        Band::new(&call, self.band()[1], arena);
+        self.groups(arena);
+        let terms = Terms::new(self, len, self.has_edges());
+        let batch = Batch::new(&call, terms, [Group { len, ..Group::default() }; LANES], arena);
+        batch.related(arena);
+        Loading::new(&batch, arena);
+        Fits::new(&batch, arena);
+        Edges::new(&batch, arena);
+        let choices = Choices::new(self, &batch.terms);
+        Shares::last(choices, arena);
+        Room::new(choices, batch.terms.fixed(), arena);
+        arena.counted()
     }
 }

@@ -116,7 +116,7 @@ impl Call<'_> {
         }
         steps::load::<P>(&mut batch, arena);
         let mut fits = Fits::new(&batch, arena);
-        let mut edges = has_edges.then(|| Edges::new(&batch, arena));
+        let mut edges = Edges::new(&batch, arena);
         if let Some(edges) = &mut edges {
             steps::load_edges::<P>(edges, &batch);
         }

@@ -20,7 +20,7 @@ pub(super) const AT_ONCE: usize = 4;
 impl<'a> Arena<'a, f32> {
     /// The next groups of eight, by fours.
     pub(super) fn take_fours(&mut self, count: usize) -> &'a mut [Four] {
-        self.take_lanes(count * AT_ONCE).as_chunks_mut().0
+        self.take_lanes(count.saturating_mul(AT_ONCE)).as_chunks_mut().0
     }
 }
 

@@ -28,13 +28,6 @@ pub(super) struct Several<'a> {
 }
 
 impl<'a> Several<'a> {
-    /// Lanes of workspace.
-    pub(super) fn len(terms: &Terms, values: usize) -> usize {
-        let panels = panels(values * terms.ends.len());
-        let samples = AT_ONCE * (terms.columns() + terms.functions + values);
-        samples + panels * (3 * LANES + 1 + LANES * terms.slices * terms.columns())
-    }
-
     pub(super) fn new(terms: &Terms, values: usize, arena: &mut Arena<'a, f32>) -> Self {
         let panels = panels(values * terms.ends.len());
         let coefficients = arena.take_lanes(LANES * terms.slices * panels * terms.columns());

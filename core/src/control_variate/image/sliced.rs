@@ -23,11 +23,6 @@ pub(super) const fn panels(count: usize) -> usize {
 }
 
 impl<'a> Sliced<'a> {
-    /// Lanes of workspace.
-    pub(super) fn len(slices: usize, columns: usize, values: usize) -> usize {
-        if slices == 0 { 0 } else { slices * LANES * Self::each(columns, values) + panels(columns + values) }
-    }
-
     /// Products of one slice and lane.
     fn each(columns: usize, values: usize) -> usize {
         let eights = panels(columns);

@@ -76,19 +76,6 @@ impl<'a> Apart<'a> {
         terms.all_own() + terms.columns() + values + terms.fixed()
     }
 
-    /// Lanes of workspace.
-    pub(super) fn len(terms: &Terms, values: usize, n: usize) -> usize {
-        let (slices, width, order) = (terms.slices, terms.columns(), Self::order(terms, values));
-        if slices == 0 {
-            return 0;
-        }
-        let each = Sums::len(width, terms.of_slices(values, n)) + order * terms.all_own();
-        let coefficients = if n > 1 { slices * width } else { terms.fixed() } * values * terms.ends.len();
-        let border = packed_len(width) + (values + terms.fixed()) * width;
-        let several = if n > 1 { Several::len(terms, values) } else { 0 };
-        slices * each + border + order * (1 + terms.all_own()) + AT_ONCE * width + coefficients + several
-    }
-
     pub(super) fn new(terms: &Terms, values: usize, n: usize, arena: &mut Arena<'a, f32>) -> Self {
         let (slices, width, order) = (terms.slices, terms.columns(), Self::order(terms, values));
         let fits = values * terms.ends.len();
