@@ -5,8 +5,9 @@
 //! `S` is `&[T]` or `&mut [T]`.
 
 use crate::real::Real;
-pub(crate) use crate::rows::{at, first_mut, from, from_mut, halves_mut, row_at, row_at_mut};
-use crate::rows::{part, part_mut, rows, rows_mut};
+pub(crate) use crate::rows::{
+    at, first, first_mut, from, from_mut, halves, halves_mut, part, part_mut, row_at, row_at_mut, rows, rows_mut,
+};
 use core::ops::{Deref, DerefMut};
 
 /// The count of numbers in a packed triangle of `order` rows.

@@ -26,9 +26,8 @@ pub use shape::{MAX_DIMS, MAX_ORDER, MAX_TERMS};
 
 use crate::error::Error;
 use crate::lanes::Lanes;
-use crate::matrix::{at, halves_mut};
+use crate::matrix::{at, halves_mut, rows_mut};
 use crate::real::Real;
-use crate::rows::rows_mut;
 use gaussian::Gaussians;
 use heapless::Vec;
 use terms::Term;

@@ -16,9 +16,8 @@ use super::sums::{self, Layout, Sums};
 use super::trust::{Centre, Judge, Mixture};
 use crate::arena::Arena;
 use crate::basis::Basis;
-use crate::matrix::at;
+use crate::matrix::{at, first, rows, rows_mut};
 use crate::real::Real;
-use crate::rows::{first, rows, rows_mut};
 
 /// The number of candidates besides the plain mean.
 const FITS: usize = MIXED.len();

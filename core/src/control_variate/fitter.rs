@@ -12,9 +12,8 @@ use super::ridge::{self, CHOICES, MAX_FITS, MIXED};
 use super::trust::{self, Centre, Judge, Mixture};
 use crate::arena::Arena;
 use crate::basis::Basis;
-use crate::matrix::{at, packed_len};
+use crate::matrix::{at, packed_len, rows, rows_mut};
 use crate::real::Real;
-use crate::rows::{rows, rows_mut};
 use core::array;
 
 /// The fits to a design, and how much each counts.

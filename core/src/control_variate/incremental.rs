@@ -14,9 +14,8 @@ use super::sums::{self, Change, Layout};
 use super::{ridge, trust};
 use crate::arena::Arena;
 use crate::basis::{Basis, Shape};
-use crate::matrix::row_at;
+use crate::matrix::{row_at, rows_mut};
 use crate::real::Real;
-use crate::rows::rows_mut;
 
 /// Total ridge strengths: not per sample, as the fits of few samples need them most.
 const STRENGTHS: [f64; 2] = [0.1, 1.0];

@@ -9,8 +9,7 @@ use super::sums::{Change, Form, Sums};
 use crate::arena::Arena;
 use crate::basis::{Basis, Family};
 use crate::error::Error;
-use crate::matrix::{Panel, Triangle};
-use crate::rows::{first_mut, from_mut};
+use crate::matrix::{Panel, Triangle, first_mut, from_mut};
 use core::iter;
 
 /// A streaming least-squares regressor (Alg. 1) over `DIMS` coordinates with `TERMS` terms, constant included, and

@@ -8,9 +8,10 @@ use super::config::Config;
 use super::per_channel::PerChannel;
 use crate::basis::MAX_TERMS;
 use crate::linalg::givens;
-use crate::matrix::{Panel, Triangle, copy, packed_len};
+use crate::matrix::{
+    Panel, Triangle, at, copy, first, first_mut, from_mut, halves, halves_mut, packed_len, row_at, row_at_mut,
+};
 use crate::real::Real;
-use crate::rows::{at, first, first_mut, from_mut, halves, halves_mut, row_at, row_at_mut};
 use core::ops::{Deref, DerefMut};
 
 /// What is kept of the samples' rows.

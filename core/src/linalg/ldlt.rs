@@ -1,9 +1,8 @@
 //! A = L D L' for symmetric positive semidefinite matrices: the direct solver of (4.27).
 
 use crate::lanes::{self, LANES, Lanes, dot};
-use crate::matrix::{Triangle, from, split_at};
+use crate::matrix::{Triangle, from, part, split_at};
 use crate::real::{Real, rounding};
-use crate::rows::part;
 use core::ops::{Deref, DerefMut};
 
 /// A factored matrix: L below the diagonal, and on it 1 / D.

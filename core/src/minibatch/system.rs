@@ -14,10 +14,9 @@
 
 use super::Batch;
 use crate::error::{Error, check_part};
-use crate::matrix::packed_len;
+use crate::matrix::{first, packed_len};
 use crate::mis::linear::{self, Cells, Vector};
 use crate::mis::{MAX_TECHNIQUES, Solver};
-use crate::rows::first;
 
 /// Averages of A, q - 1 and the counts over the batches so far, newer ones counting for more.
 #[derive(Clone, Copy, Debug, PartialEq)]

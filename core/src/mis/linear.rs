@@ -2,8 +2,7 @@
 
 use super::solver::Solver;
 use crate::linalg::ldlt::Ldlt;
-use crate::matrix::{Triangle, copy, first_mut, packed_len};
-use crate::rows::first;
+use crate::matrix::{Triangle, copy, first, first_mut, packed_len};
 use core::array::from_fn;
 
 /// The most techniques that one call combines.

@@ -16,9 +16,8 @@ use super::linear::{self, MAX_TECHNIQUES, System, Vector};
 use super::memory::{Sums, len, record_len, sums_len};
 use super::solver::Solver;
 use crate::error::{Error, check_part};
-use crate::matrix::copy;
+use crate::matrix::{copy, first, first_mut, rows, rows_mut};
 use crate::real::saturate;
-use crate::rows::{first, first_mut, rows, rows_mut};
 
 /// Sums from which the integrals of several functions are estimated with optimal MIS weights.
 ///

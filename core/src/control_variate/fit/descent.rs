@@ -14,9 +14,8 @@ use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, copy, from_mut};
+use crate::matrix::{at, copy, from_mut, rows_mut};
 use crate::real::Real;
-use crate::rows::rows_mut;
 
 /// Steps, if the caller names none: half as many as samples, within these bounds. Stopping early shrinks the fit as a
 /// ridge does, which few samples need.

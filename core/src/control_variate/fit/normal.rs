@@ -11,9 +11,8 @@ use super::{Fit, Penalty};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::ldlt::Ldlt;
-use crate::matrix::{Panel, Triangle, copy, packed_len, row_at};
+use crate::matrix::{Panel, Triangle, copy, packed_len, row_at, rows};
 use crate::real::{Real, rounding};
-use crate::rows::rows;
 
 /// A ridge problem whose intercept is free and eliminated.
 pub(crate) struct Normal<'a, R> {

@@ -11,9 +11,8 @@ use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Sums, minus,
 use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, row_at, row_at_mut};
+use crate::matrix::{at, row_at, row_at_mut, rows};
 use crate::real::Real;
-use crate::rows::rows;
 
 /// The most numbers of a place.
 pub(super) const MAX_FIXED: usize = 1 + MAX_AXES;

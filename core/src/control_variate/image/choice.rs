@@ -12,9 +12,8 @@ use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
-use crate::matrix::{at, packed_len, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{at, packed_len, row, row_at, row_at_mut, row_mut, rows, rows_mut};
 use crate::real::Real;
-use crate::rows::{rows, rows_mut};
 use core::f32::consts::LOG2_E;
 use core::hint::black_box;
 

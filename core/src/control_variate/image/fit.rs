@@ -12,9 +12,10 @@ use super::terms::{MAX_FITS, Terms, scale};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
-use crate::matrix::{at, copy, diagonal, first_mut, from, packed_len, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{
+    at, copy, diagonal, first, first_mut, from, packed_len, row, row_at, row_at_mut, row_mut, rows, rows_mut,
+};
 use crate::real::Real;
-use crate::rows::{first, rows, rows_mut};
 
 /// What a fit leaves of a sum of squares is at least this of it.
 const ROUNDING: f32 = 1e-5;

@@ -4,8 +4,7 @@ use super::call::{Call, Layout};
 use super::pixels::Image;
 use crate::arena::Arena;
 use crate::lanes::LANES;
-use crate::matrix::{at, from, from_mut, halves_mut, row_at, row_at_mut};
-use crate::rows::{first, halves, part};
+use crate::matrix::{at, first, from, from_mut, halves, halves_mut, part, row_at, row_at_mut};
 use heapless::Vec;
 
 /// Windows that are worked on together hold at most so many pixels, or are eight.

@@ -10,9 +10,10 @@ use super::sliced::Sliced;
 use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, copy, first_mut, from_mut, halves_mut, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{
+    at, copy, first, first_mut, from_mut, halves, halves_mut, row, row_at, row_at_mut, row_mut, rows, rows_mut,
+};
 use crate::real::Real;
-use crate::rows::{first, halves, rows, rows_mut};
 use core::array::from_fn;
 
 /// What samples are read to: they, their pixels, and sums.

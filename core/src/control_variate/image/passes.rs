@@ -14,10 +14,9 @@ use super::sums::Band;
 use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, copy, row_at, row_at_mut};
+use crate::matrix::{at, copy, row_at, row_at_mut, rows};
 use crate::processor::Processor;
 use crate::real::Real;
-use crate::rows::rows;
 use core::hint::black_box;
 
 impl Call<'_> {

@@ -3,8 +3,7 @@
 use crate::arena::Arena;
 use crate::basis::MAX_DIMS;
 use crate::lanes::{self, LANES, Lanes};
-use crate::matrix::{copy, from, halves_mut, packed_len, row_at, row_at_mut};
-use crate::rows::{halves, part, rows, rows_mut};
+use crate::matrix::{copy, from, halves, halves_mut, packed_len, part, row_at, row_at_mut, rows, rows_mut};
 
 /// A number for each of eight groups.
 pub(super) type Eight = Lanes<f32>;

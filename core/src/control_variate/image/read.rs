@@ -4,9 +4,8 @@ use super::batch::Batch;
 use super::call::Call;
 use super::products::{AT_ONCE, AT_ONCE_LANES, Eight, Four, NONE, Rows, minus};
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, first_mut, from, halves_mut};
+use crate::matrix::{at, first_mut, from, halves_mut, part_mut};
 use crate::real::{Real, saturate};
-use crate::rows::part_mut;
 use core::ops::Range;
 
 impl Call<'_> {

@@ -6,9 +6,8 @@ use super::products::{AT_ONCE, Eight, Four, NONE, combine, minus, only, product}
 use super::terms::SINGULAR;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
-use crate::matrix::{at, diagonal, from, row_at, row_at_mut};
+use crate::matrix::{at, diagonal, from, halves, part, row_at, row_at_mut, rows};
 use crate::real::Real;
-use crate::rows::{halves, part, rows};
 use core::ops::Range;
 
 /// Sums of [`Seen::correct`] of each value and fixed column.

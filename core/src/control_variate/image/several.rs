@@ -10,8 +10,7 @@ use super::sliced::panels;
 use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, row_at, row_at_mut};
-use crate::rows::{first, rows, rows_mut};
+use crate::matrix::{at, first, row_at, row_at_mut, rows, rows_mut};
 
 /// A panel is eight of the values' candidates.
 pub(super) struct Several<'a> {

@@ -19,10 +19,10 @@ use crate::arena::Arena;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
 use crate::matrix::{
-    at, copy, diagonal, first_mut, halves_mut, packed_len, row, row_at, row_at_mut, row_mut, split_at,
+    at, copy, diagonal, first_mut, halves, halves_mut, packed_len, part, row, row_at, row_at_mut, row_mut, rows,
+    rows_mut, split_at,
 };
 use crate::real::Real;
-use crate::rows::{halves, part, rows, rows_mut};
 use core::ops::Range;
 
 /// Fits of candidates that have as many own columns of each slice.

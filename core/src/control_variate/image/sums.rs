@@ -7,9 +7,8 @@ use super::groups::{Groups, Place};
 use super::products::{Eight, NONE, empty, product};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES, Lanes};
-use crate::matrix::{self, from, halves_mut, row_at_mut};
+use crate::matrix::{at, from, halves_mut, row_at_mut, rows_mut};
 use crate::real::Real;
-use crate::rows::rows_mut;
 
 /// Sums of a pixel that are not a channel's: the weight of the groups that it was in, of those with an error, and their
 /// gain.
@@ -67,7 +66,7 @@ fn every(step: usize, numbers: &[f32]) -> Eight {
     match numbers.first_chunk() {
         // One instruction, instead of eight and as many addresses.
         Some(next) if step == 1 => *next,
-        _ => core::array::from_fn(|lane| matrix::at(numbers, lane * step)),
+        _ => core::array::from_fn(|lane| at(numbers, lane * step)),
     }
 }
 

@@ -6,9 +6,8 @@ use super::call::Layout;
 use super::products::{Eight, Four, times};
 use crate::basis::{Basis, MAX_ORDER};
 use crate::lanes;
-use crate::matrix::{at, halves_mut};
+use crate::matrix::{at, first, halves_mut, rows_mut};
 use crate::real::Real;
-use crate::rows::{first, rows_mut};
 use heapless::Vec;
 
 /// The most candidates: one for each degree, one with every slice's own functions, one with all columns.

@@ -7,8 +7,7 @@ use super::importances::{State, Table};
 use super::kernel::{Kernel, Portable};
 use crate::Error;
 use crate::checksum::crc;
-use crate::matrix::copy;
-use crate::rows::{first, from, from_mut};
+use crate::matrix::{copy, first, from, from_mut};
 
 /// Bytes before the importances.
 pub const HEADER_BYTES: usize = 32;
