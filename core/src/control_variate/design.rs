@@ -132,7 +132,7 @@ impl<'a, R: Real> Design<'a, R> {
     }
 
     /// The panels one by one: columns and values of eight samples.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn each_panel(&self) -> impl Iterator<Item = (&[Lanes<R>], &[Lanes<R>])> {
         self.panels.rows().zip(self.values.rows())
     }

@@ -174,7 +174,7 @@ impl<R: Real> Blend<R> {
 }
 
 /// The sum of squared leave-one-out residuals of the plain mean.
-#[inline(always)]
+#[inline]
 fn plain_press<R: Real>(design: &Design<'_, R>) -> PerChannel<R> {
     let n = R::from_usize(design.n);
     // f_i minus the mean of the others is n / (n - 1) times f_i minus the mean.

@@ -13,7 +13,7 @@ pub(crate) struct Ldlt<S>(Triangle<S>);
 
 impl<R: Real, S: DerefMut<Target = [R]>> Ldlt<S> {
     /// Factors a matrix in place.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn new(mut matrix: Triangle<S>) -> Self {
         for j in 0..matrix.order() {
             let Some((l, row, diagonal)) = matrix.split(j) else { break };
@@ -48,7 +48,7 @@ impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
     }
 
     /// x := L^-1 x.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn forward(&self, x: &mut [R]) {
         for j in 0..x.len() {
             let Some((before, x_j)) = split_at(x, j) else { return };

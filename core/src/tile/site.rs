@@ -27,7 +27,7 @@ impl Site {
     }
 
     /// Where one of the tile's samples begins.
-    #[inline(always)]
+    #[inline]
     pub(super) const fn at(self, shape: Shape, sample: u32) -> usize {
         self.start.wrapping_add((sample as usize).wrapping_mul(shape.dims as usize))
     }
@@ -47,7 +47,7 @@ impl Site {
     }
 
     /// The same where it takes a look-up at most, for an index below spp.
-    #[inline(always)]
+    #[inline]
     pub(super) fn looked_up(self, shape: Shape, domain: u32, index: u32) -> Option<u32> {
         let Shape { spp, progressive, .. } = shape;
         if domain == 0 || spp == 1 {

@@ -81,7 +81,7 @@ impl<'a> Tile<'a> {
 
     /// Where in the payload, counted in coordinates, a sample begins.
     // As the other look-ups: without, a draw of stored values takes 23 % more instructions.
-    #[inline(always)]
+    #[inline]
     pub(super) const fn place(&self, frame: u32, y: u32, x: u32, sample: u32) -> usize {
         let Shape { size, spp, dims, .. } = self.shape;
         let row = (frame as usize).wrapping_mul(size as usize).wrapping_add(y as usize);
@@ -90,7 +90,7 @@ impl<'a> Tile<'a> {
     }
 
     /// N consecutive stored integers, of `BYTES` bytes each; `None` beyond the payload.
-    #[inline(always)]
+    #[inline]
     fn stored<const BYTES: usize, const N: usize>(&self, place: usize) -> Option<&[[u8; BYTES]; N]> {
         let (values, _) = self.payload.get(place.wrapping_mul(BYTES)..)?.as_chunks();
         values.first_chunk()

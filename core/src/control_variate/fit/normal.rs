@@ -43,7 +43,7 @@ impl<'a, R: Real> Normal<'a, R> {
     }
 
     /// P'P + L, factored.
-    #[inline(always)]
+    #[inline]
     fn factor<'f>(&self, penalty: Penalty<'_, R>, arena: &mut Arena<'f, R>) -> Ldlt<&'f mut [R]> {
         let mut matrix = arena.triangle(self.gram.order());
         copy(matrix.entries_mut(), self.gram.entries());

@@ -153,7 +153,7 @@ impl<'a> Batch<'a> {
     }
 
     /// Of which colour a slot is.
-    #[inline(always)]
+    #[inline]
     pub(super) fn colour(&self, (block, row): (usize, usize)) -> usize {
         (if self.has_colours { block } else { row }) % COLOURS
     }
@@ -292,7 +292,7 @@ impl<'a> Batch<'a> {
     }
 
     /// Values in units.
-    #[inline(always)]
+    #[inline]
     pub(super) fn put_in_units(&self, values: &mut [Four]) {
         for (value, units) in values.iter_mut().zip(self.units.iter().take(self.call.config.channels).cycle()) {
             *value = value.map(|value| units.apply(&value));

@@ -28,7 +28,7 @@ impl Highest {
     }
 
     /// Adds a value, keeping `count` of them.
-    #[inline(always)]
+    #[inline]
     fn add(&mut self, mut value: Eight, count: usize) {
         for place in self.0.iter_mut().take(count) {
             let above = lanes::zip(place, &value, |place, value| if value > place { value } else { place });

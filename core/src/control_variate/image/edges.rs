@@ -118,7 +118,7 @@ fn functions(x: &Four, y: &Four) -> [Four; FUNCTIONS] {
 }
 
 /// 1 / (1 + e^-q)
-#[inline(always)]
+#[inline]
 fn logistic(q: &Eight) -> Eight {
     let mut out = *q;
     for value in &mut out {
@@ -358,7 +358,7 @@ impl<'a> Edges<'a> {
     }
 
     /// Adds what a block's samples say of the next step.
-    #[inline(always)]
+    #[inline]
     fn add_slopes(
         &self,
         batch: &Batch<'_>,
@@ -479,7 +479,7 @@ impl<'a> Edges<'a> {
     }
 
     /// How much light of a channel arrives at the points, and the interpolant's integral.
-    #[inline(always)]
+    #[inline]
     fn light(&mut self, batch: &Batch<'_>, at: (usize, usize), a: &[Eight], most: &Eight) -> Eight {
         let base = self.place_part(batch, at, a);
         let Some(&[x, y]) = a.get(batch.terms.fixed()..).and_then(<[Eight]>::first_chunk) else { return NONE };

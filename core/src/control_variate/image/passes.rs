@@ -189,7 +189,7 @@ impl Call<'_> {
 
 impl Batch<'_> {
     /// Keeps the corrections of the pixels that are chosen for in a turn.
-    #[inline(always)]
+    #[inline]
     pub(super) fn put(&self, groups: &mut Groups<'_>, fits: &Fits<'_>, turn: Option<usize>, shares: &Shares<'_>) {
         let (channels, turns) = (self.call.config.channels, self.call.turns());
         for block in 0..self.inside.len() {

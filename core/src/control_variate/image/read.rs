@@ -112,7 +112,7 @@ impl Call<'_> {
     }
 
     /// Reads the values alone of some samples of a slot's pixels.
-    #[inline(always)]
+    #[inline]
     pub(super) fn read_values(
         &self,
         batch: &Batch<'_>,
@@ -125,7 +125,7 @@ impl Call<'_> {
     }
 
     /// The slices of samples that were read.
-    #[inline(always)]
+    #[inline]
     pub(super) fn slices(&self, rows: &Rows<'_>) -> Four {
         let mut out = [NONE; AT_ONCE];
         for (out, slices) in out.iter_mut().zip(self.basis.slices_at(&rows.x).as_chunks::<LANES>().0) {

@@ -43,7 +43,7 @@ impl<'a> Several<'a> {
     }
 
     /// Sets the coefficients, which are given for each value, candidate, slice and column.
-    #[inline(always)]
+    #[inline]
     pub(super) fn set(&mut self, terms: &Terms, values: usize, coefficients: &[Eight]) {
         let (columns, count, slices) = (terms.columns(), terms.ends.len().max(1), terms.slices);
         let panels = panels(values * count);
@@ -62,7 +62,7 @@ impl<'a> Several<'a> {
 
     /// Corrects a block's pixels of several samples, which the fits have not seen, and adds to `left` for each value
     /// and candidate what the fits leave of the samples about their pixels' means.
-    #[inline(always)]
+    #[inline]
     pub(super) fn correct(&mut self, batch: &Batch<'_>, block: usize, corrections: &mut [Four], left: &mut [Eight]) {
         let (terms, call, count) = (&batch.terms, batch.call, batch.terms.ends.len().max(1));
         let panels = panels(batch.values * count);
@@ -101,7 +101,7 @@ impl<'a> Several<'a> {
     }
 
     /// Adds one sample of a group's pixel, by the coefficients of the group's slice.
-    #[inline(always)]
+    #[inline]
     fn explain(&mut self, (line, lane): (usize, usize), slice: usize, firsts: &[Eight], count: usize) {
         let (width, panels) = (self.columns.len(), self.differences.len());
         let values = self.samples.values.iter().zip(firsts);
