@@ -23,7 +23,6 @@ static ROWS: [[[u32; 4]; 2]; 5] = [
 
 /// The stratum, of 2^bits, that sample `index` of a pixel has in further dimension `number`, 0 or 1: a bijection of the
 /// index for each `random`.
-// See `point.rs`.
 #[inline]
 pub(super) fn stratum(index: u32, bits: u32, number: u32, random: u32) -> u32 {
     if number > 0 && bits < 3 {
