@@ -66,19 +66,27 @@ pub(crate) fn minus_product<R: Real, const L: usize>(a: Lanes<R, L>, b: Lanes<R,
     out
 }
 
-/// A sum less products, one after the other.
+/// Sums less products, one after the other: of each sum with a column of `a`.
 #[inline(always)]
-pub(crate) fn minus_products<R: Real>(mut sum: Lanes<R>, a: &[Lanes<R>], b: &[Lanes<R>]) -> Lanes<R> {
+pub(crate) fn minus_products<R: Real, const N: usize>(
+    mut sums: [Lanes<R>; N],
+    a: &[[Lanes<R>; N]],
+    b: &[Lanes<R>],
+) -> [Lanes<R>; N] {
     // Two at a time, or going through them takes as long as the arithmetic.
     let ((pairs, rest), (others, last)) = (a.as_chunks::<2>(), b.as_chunks::<2>());
-    for ([a, b], [c, d]) in pairs.iter().zip(others) {
-        sum = minus_product(minus_product(sum, *a, *c), *b, *d);
+    for ([x, y], [l, m]) in pairs.iter().zip(others) {
+        for n in 0..N {
+            sums[n] = minus_product(minus_product(sums[n], x[n], *l), y[n], *m);
+        }
         keep_together();
     }
-    if let ([a], [b]) = (rest, last) {
-        sum = minus_product(sum, *a, *b);
+    if let ([x], [l]) = (rest, last) {
+        for n in 0..N {
+            sums[n] = minus_product(sums[n], x[n], *l);
+        }
     }
-    sum
+    sums
 }
 
 /// The lanes that are positive, elsewhere 1: what may be divided by.

@@ -118,7 +118,7 @@ pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
         let Some((l, row, diagonal)) = matrices.split(j) else { return };
         for k in 0..j {
             let Some((before, v_k)) = split_at(row, k) else { return };
-            *v_k = lanes::minus_products(*v_k, before, l.left(k));
+            [*v_k] = lanes::minus_products([*v_k], before.as_chunks().0, l.left(k));
         }
         let mut pivot = *diagonal;
         for (k, value) in row.iter_mut().enumerate() {
@@ -139,22 +139,7 @@ pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first:
     let factors = Triangle::new(factors, x.len());
     for (j, row) in factors.rows().enumerate().skip(first) {
         let Some((before, x_j)) = split_at(x, j) else { return };
-        let mut sums = *x_j;
-        // Two at a time, or going through them takes as long as the arithmetic.
-        let (pairs, rest) = from(before, first).as_chunks::<2>();
-        let (row, last) = part(row, first, j - first).as_chunks::<2>();
-        for ([x, y], [l, m]) in pairs.iter().zip(row) {
-            for n in 0..N {
-                sums[n] = lanes::minus_product(lanes::minus_product(sums[n], x[n], *l), y[n], *m);
-            }
-            lanes::keep_together();
-        }
-        if let ([x], [l]) = (rest, last) {
-            for n in 0..N {
-                sums[n] = lanes::minus_product(sums[n], x[n], *l);
-            }
-        }
-        *x_j = sums;
+        *x_j = lanes::minus_products(*x_j, from(before, first), part(row, first, j - first));
     }
 }
 

@@ -86,8 +86,8 @@ pub(super) fn plus_four(mut sum: Eight, a: &Four, b: &Four) -> Eight {
 pub(super) fn add_products(sums: &mut [Eight], column: &Four, columns: &[Four]) {
     let column = *column;
     let (pairs, rest) = sums.as_chunks_mut::<2>();
-    let (others, last) = columns.as_chunks::<2>();
-    let odd = rest.first_mut().zip(others.get(pairs.len()).map_or(last.first(), |[other, _]| Some(other)));
+    let (others, _) = columns.as_chunks::<2>();
+    let odd = rest.first_mut().zip(columns.get(2 * pairs.len()));
     for ([a, b], [c, d]) in pairs.iter_mut().zip(others) {
         *a = plus_four(*a, &column, c);
         *b = plus_four(*b, &column, d);

@@ -234,7 +234,7 @@ impl<'a> Apart<'a> {
                     lanes::keep_together();
                 }
                 for (out, line) in out.iter_mut().zip(rows(lines, own)) {
-                    *out = lanes::minus_products(*out, solved, line);
+                    [*out] = lanes::minus_products([*out], solved.as_chunks().0, line);
                 }
             }
         }
@@ -317,7 +317,7 @@ impl<'a> Apart<'a> {
             for j in 0..own {
                 let Some((before, z)) = split_at(solved, j) else { return };
                 let l = part(triangle, packed_len(j), j);
-                *z = lanes::minus_products(at(self.columns, terms.source(j).0)[line], before, l);
+                [*z] = lanes::minus_products([at(self.columns, terms.source(j).0)[line]], before.as_chunks().0, l);
                 let scaled = product(z, &diagonal(triangle, j));
                 leverage[line] = lanes::plus_product(leverage[line], scaled, *z);
                 for (sum, row) in sums.iter_mut().take(values + fixed).zip(rows(of_sums, own)) {
@@ -325,7 +325,7 @@ impl<'a> Apart<'a> {
                 }
             }
             for (column, row) in self.columns.iter_mut().zip(rows(of_columns, own)) {
-                column[line] = lanes::minus_products(column[line], solved, row);
+                [column[line]] = lanes::minus_products([column[line]], solved.as_chunks().0, row);
             }
         }
         let (of_values, of_units) = halves(self.sides, values * width);
