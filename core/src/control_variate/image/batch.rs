@@ -194,17 +194,20 @@ impl<'a> Batch<'a> {
         let scales = axes.map(|axis| (SQRT_3 / call.windows.extent[axis % MAX_AXES].max(1) as f64) as f32);
         let [width, height] = [call.windows.given.width, call.windows.given.height].map(|extent| extent as u32);
         let corners = self.lanes.map(|group| call.pixel(call.window(group.window), Place::default(), 0) as u32);
-        let members = self.lanes.map(|group| groups.members(&group));
+        let (members, lens) =
+            (self.lanes.map(|group| groups.members(&group)), self.lanes.map(|group| group.len as u32));
         let (mut other, slots) = (None, self.inside.len() * AT_ONCE);
         for block in 0..self.inside.len() {
             for row in 0..AT_ONCE {
                 let (mut one, mut places) = (NONE, [0.0; LANES].map(Place::read));
                 let mut numbers = [0; LANES];
+                let (first, step) = (self.member((block, row), 0) as u32, u32::from(self.is_joined));
+                for l in 0..LANES {
+                    numbers[l] = first + step * l as u32;
+                    one[l] = if numbers[l] < lens[l] { 1.0 } else { 0.0 };
+                }
                 for lane in 0..LANES {
-                    let index = self.member((block, row), lane);
-                    numbers[lane] = index as u32;
-                    one[lane] = if index < self.lanes[lane].len { 1.0 } else { 0.0 };
-                    if let Some(&place) = members[lane].get(index) {
+                    if let Some(&place) = members[lane].get(numbers[lane] as usize) {
                         places[lane] = Place::read(place);
                     }
                 }
