@@ -13,6 +13,7 @@ use crate::arena::Arena;
 use crate::lanes::{self, LANES};
 use crate::matrix::{at, row_at, row_at_mut, rows};
 use crate::real::Real;
+use core::array::from_fn;
 
 /// The most numbers of a place.
 pub(super) const MAX_FIXED: usize = 1 + MAX_AXES;
@@ -158,14 +159,15 @@ impl<'a> Batch<'a> {
         (if self.has_colours { block } else { row }) % COLOURS
     }
 
-    /// Where in its group the pixel of a slot is.
-    pub(super) fn member(&self, (block, row): (usize, usize), lane: usize) -> usize {
+    /// Where in their groups the pixels of a slot are.
+    pub(super) fn members(&self, (block, row): (usize, usize)) -> [u32; LANES] {
         let slot = if self.has_colours {
             COLOURS * AT_ONCE * (block / COLOURS) + block % COLOURS + COLOURS * row
         } else {
             AT_ONCE * block + row
         };
-        if self.is_joined { slot * LANES + lane } else { slot }
+        let (first, step) = if self.is_joined { (slot * LANES, 1) } else { (slot, 0) };
+        from_fn(|lane| (first + step * lane) as u32)
     }
 
     /// The given pixels of a slot; another's where a lane has none.
@@ -200,10 +202,8 @@ impl<'a> Batch<'a> {
         for block in 0..self.inside.len() {
             for row in 0..AT_ONCE {
                 let (mut one, mut places) = (NONE, [0.0; LANES].map(Place::read));
-                let mut numbers = [0; LANES];
-                let (first, step) = (self.member((block, row), 0) as u32, u32::from(self.is_joined));
+                let mut numbers = self.members((block, row));
                 for l in 0..LANES {
-                    numbers[l] = first + step * l as u32;
                     one[l] = if numbers[l] < lens[l] { 1.0 } else { 0.0 };
                 }
                 for lane in 0..LANES {

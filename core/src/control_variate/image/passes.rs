@@ -220,13 +220,12 @@ impl Batch<'_> {
                     lanes::zip(&sum, &units.powers, |sum, power| if sum.is_finite() { sum * power } else { 0.0 })
                 });
                 for (row, sum) in sum.iter().enumerate() {
-                    for (lane, group) in self.lanes.iter().enumerate() {
-                        let index = self.member((block, row), lane);
-                        let at = (group.start + index) * channels + channel;
-                        if index < group.len
+                    for ((group, index), sum) in self.lanes.iter().zip(self.members((block, row))).zip(sum) {
+                        let at = (group.start + index as usize) * channels + channel;
+                        if (index as usize) < group.len
                             && let Some(out) = groups.corrections.get_mut(at)
                         {
-                            *out = sum[lane % LANES];
+                            *out = *sum;
                         }
                     }
                 }
