@@ -125,7 +125,9 @@ fn large_fits_are_finite() {
             let smooth = values(&u, dims, smooth);
             let f: Vec<f32> = smooth.iter().flat_map(|f| [1.0, 2.0, 3.0, 4.0].map(|c| c * f)).collect();
             for (what, estimate) in every_estimate(&config, &u, &f) {
-                assert!(is_sound(&estimate) && estimate.gain.is_finite(), "{what}: {estimate:?}");
+                // Least squares of 20 samples does not always know what it gains.
+                let is_known = estimate.gain.is_finite() || what.contains("LeastSquares");
+                assert!(is_sound(&estimate) && is_known, "{what}: {estimate:?}");
             }
         }
     }
@@ -224,6 +226,26 @@ fn equal_positions_give_the_mean() {
         for (what, estimate) in every_estimate(&Config::new(dims, order, 1), &u, &f) {
             let tolerance = if what.contains("f32") { 1e-3 } else { 1e-6 };
             close(&estimate, mean, &f, tolerance, &what);
+        }
+    }
+}
+
+/// Of no more samples than terms least squares leaves no residual that could tell its error, whatever the solver.
+#[test]
+fn errors_of_no_residual_are_unknown() {
+    let mut rng = SplitMix64::new(43);
+    for n in 2..9 {
+        let u = points(n, 2, &mut rng);
+        let f: Vec<f32> = (0..n).map(|_| rng.normal() as f32).collect();
+        let mut all = every_estimate(&Config::new(2, 2, 1), &u, &f);
+        all.retain(|(what, _)| what.contains("LeastSquares"));
+        let mut regressor = Regressor::<2, 6, 1>::new(Family::Legendre, 2).unwrap();
+        u.as_chunks().0.iter().zip(&f).for_each(|(u, &f)| regressor.add(u, &[f]).unwrap());
+        all.push(("regressor".into(), regressor.estimate(1e-9).unwrap()));
+        for (what, estimate) in all {
+            let is_known = estimate.std_error[0].is_finite() && estimate.gain.is_finite();
+            let is_unknown = estimate.std_error[0] == f32::INFINITY && estimate.gain == f32::INFINITY;
+            assert!(if n > 6 { is_known } else { is_unknown }, "{what}, {n}: {estimate:?}");
         }
     }
 }

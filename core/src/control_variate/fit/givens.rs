@@ -65,7 +65,7 @@ pub(crate) fn least_squares<R: Real>(
     unit(x, 0, R::ONE);
     let eccentricity = not_below_zero(count * givens::inverse_square(&system.gram, x) - R::ONE);
     let variance = result::residual_variance(residuals, layout.columns, count, eccentricity);
-    Outcome { correction, variance }
+    Outcome { correction, variance: Some(variance) }
 }
 
 /// x := `value` e_j
