@@ -338,4 +338,5 @@ fn leave_one_out_with_a_rare_control_function_is_unbiased() {
     assert_unbiased("f64", moments::<f64>(Ridge::Default), 1.0);
     assert_unbiased("f32", moments::<f32>(Ridge::Default), 1.0);
     assert_unbiased("f64, ridge 1e-8", moments::<f64>(Ridge::Fixed(1e-8)), 1.0);
+    assert_unbiased("f64, ridge 1e7", moments::<f64>(Ridge::Fixed(1e7)), 1.0);
 }

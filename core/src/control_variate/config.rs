@@ -17,7 +17,8 @@ pub enum Estimator {
     Robust,
     /// The fit's residuals on its own samples (Alg. 1). Cheapest; biased O(1/n); needs several samples per term.
     LeastSquares,
-    /// One ridge fit, each sample corrected by the fit to all others, in closed form. Exactly unbiased.
+    /// One ridge fit, each sample corrected by the fit to all others, in closed form. Exactly unbiased, but for
+    /// [`Ridge::Auto`], and next to exactly with control functions.
     LeaveOneOut,
     /// Each fold is corrected by a robust fit to the other folds. Exactly unbiased.
     KFold,
@@ -80,7 +81,8 @@ pub enum Ridge {
     /// The estimator's documented default.
     #[default]
     Default,
-    /// The strength with the smallest leave-one-out error of a few; the default where there are no such errors.
+    /// The strength with the smallest leave-one-out error of a few, which biases leave-one-out; the default where there
+    /// are no such errors.
     Auto,
     /// Penalty per sample on a first-degree coefficient; positive and finite, raised to 1e-12 or in `f32` to 1e-5.
     Fixed(f32),
