@@ -74,8 +74,7 @@ typedef struct nf_cv_config {
     // first dims coordinates must be uniform for every sample, however short its path.
     uint32_t stride;
     uint32_t solver; // NF_SOLVER_*
-    // NF_PRECISION_*, of accumulators. Arrays are computed in the best that the library was built for, images in
-    // float.
+    // NF_PRECISION_*, of accumulators. Arrays take the best that the library was built for, images float.
     uint32_t precision;
     uint32_t nonfinite; // NF_NONFINITE_*
     uint32_t color; // NF_COLOR_*
@@ -110,7 +109,9 @@ uint32_t nf_cv_terms(const nf_cv_config *config);
 // An estimate of an integral over primary sample space.
 typedef struct nf_estimate {
     float mean[4]; // The integral, for each channel; zero for channels that are not there.
-    float std_error[4]; // Each mean's standard error; infinite of one sample, or where a ratio's luminances cancel.
+    // Each mean's standard error; infinite of one sample, where a ratio's luminances cancel, and, with `gain`, of
+    // least squares from no more samples than terms.
+    float std_error[4];
     uint32_t samples; // Samples used.
     float gain; // Estimated variance relative to the plain mean's, averaged over the channels; 1 is no gain.
 } nf_estimate;
@@ -141,8 +142,7 @@ typedef struct nf_cv_image {
     uint32_t width; // Pixels in a row.
     uint32_t height; // Rows.
     uint32_t frames; // Images of the same pixels at other times, which share fits; 0 means 1.
-    // Width and height of the windows that pixels share a fit in; 0 means 8. At most 1024 pixels in all frames
-    // together.
+    // Width and height of the windows that pixels share a fit in; 0 means 8. At most 1024 pixels over all frames.
     uint32_t window;
     // Pixels from one window to the next, at most `window`; 0 means half of it. Corrections of overlapping windows are
     // averaged; the time of an estimate goes with the square of window / stride.

@@ -20,7 +20,8 @@ class Estimate(NamedTuple):
 
     Attributes:
         mean: the integral; a last axis for the channels, if there are channels.
-        std_error: the mean's standard error, of the same shape; infinite where one sample is all there is.
+        std_error: the mean's standard error, of the same shape; infinite where one sample is all there is, or,
+            with the gain, least squares has no more samples than terms.
         gain: estimated variance relative to the plain mean's, without that axis; 1 is no gain.
     """
 

@@ -125,7 +125,9 @@ fn large_fits_are_finite() {
             let smooth = values(&u, dims, smooth);
             let f: Vec<f32> = smooth.iter().flat_map(|f| [1.0, 2.0, 3.0, 4.0].map(|c| c * f)).collect();
             for (what, estimate) in every_estimate(&config, &u, &f) {
-                assert!(is_sound(&estimate) && estimate.gain.is_finite(), "{what}: {estimate:?}");
+                // Least squares of 20 samples does not always know what it gains.
+                let is_known = estimate.gain.is_finite() || what.contains("LeastSquares");
+                assert!(is_sound(&estimate) && is_known, "{what}: {estimate:?}");
             }
         }
     }
@@ -224,6 +226,68 @@ fn equal_positions_give_the_mean() {
         for (what, estimate) in every_estimate(&Config::new(dims, order, 1), &u, &f) {
             let tolerance = if what.contains("f32") { 1e-3 } else { 1e-6 };
             close(&estimate, mean, &f, tolerance, &what);
+        }
+    }
+}
+
+/// Fewer distinct positions than terms, many times each, and one coordinate that repeats the other: least squares of
+/// noise is what the oracle makes of it with next to no ridge, by Givens rotations too, whose error is that of the
+/// normal equations.
+#[test]
+fn columns_that_depend_on_each_other() {
+    let mut rng = SplitMix64::new(40);
+    let mut check = |dims, order, u: &[f32], basis| {
+        let f: Vec<f32> = (0..u.len() / dims).map(|_| rng.normal() as f32).collect();
+        for ridge in [Ridge::Default, Ridge::Fixed(1e-5), Ridge::Fixed(1e-3)] {
+            let base = Config { basis, ridge, ..config(dims, order, Estimator::LeastSquares) };
+            let strength = if let Ridge::Fixed(strength) = ridge { f64::from(strength) } else { 1e-8 };
+            let expected = Regression::fit(&design(&base, &wide(u)), &wide(&f), strength * f.len() as f64).intercept;
+            // With less the normal equations lose digits.
+            let ridge = if ridge == Ridge::Default { Ridge::Fixed(1e-7) } else { ridge };
+            let normal = streamed::<f64>(&Config { solver: Solver::NormalEquations, ridge, ..base }, u, &f).unwrap();
+            let config = Config { solver: Solver::SquareRoot, ..base };
+            for (estimate, tolerance) in [
+                (batch::<f64>(&config, u, &f), 2e-4),
+                (streamed::<f64>(&config, u, &f), 2e-4),
+                // The rounding of more samples, in float, is no random walk.
+                (if f.len() < 5000 { streamed::<f32> } else { streamed::<f64> }(&config, u, &f), 1e-3),
+            ] {
+                let (estimate, what) = (estimate.unwrap(), format!("{dims} {order} {} {ridge:?} {basis:?}", f.len()));
+                close(&estimate, expected, &f, tolerance, &what);
+                let ratio = f64::from(estimate.std_error[0] / normal.std_error[0]);
+                assert!((ratio - 1.0).abs() < 0.02, "{what}: {estimate:?} beside {normal:?}");
+            }
+        }
+    };
+    for (dims, order, distinct) in [(2, 2, 2), (2, 2, 3), (2, 2, 4), (2, 2, 5), (3, 2, 2), (3, 2, 7), (1, 7, 5)] {
+        let place = points(distinct, dims, &mut SplitMix64::new(41));
+        // Gaussians are nearly dependent even where positions are not.
+        for basis in [Family::Legendre, Family::Step, Family::Sine] {
+            check(dims, order, &place.repeat(8), basis);
+        }
+    }
+    for n in [40, 4000, 50_000] {
+        let line: Vec<f32> = points(n, 1, &mut SplitMix64::new(42)).iter().flat_map(|&u| [u; 2]).collect();
+        check(2, 2, &line, Family::Legendre);
+    }
+}
+
+/// Of no more samples than terms least squares leaves no residual that could tell its error, whatever the solver.
+#[test]
+fn errors_of_no_residual_are_unknown() {
+    let mut rng = SplitMix64::new(43);
+    for n in 2..9 {
+        let u = points(n, 2, &mut rng);
+        let f: Vec<f32> = (0..n).map(|_| rng.normal() as f32).collect();
+        let mut all = every_estimate(&Config::new(2, 2, 1), &u, &f);
+        all.retain(|(what, _)| what.contains("LeastSquares"));
+        let mut regressor = Regressor::<2, 6, 1>::new(Family::Legendre, 2).unwrap();
+        u.as_chunks().0.iter().zip(&f).for_each(|(u, &f)| regressor.add(u, &[f]).unwrap());
+        all.push(("regressor".into(), regressor.estimate(1e-9).unwrap()));
+        for (what, estimate) in all {
+            let is_known = estimate.std_error[0].is_finite() && estimate.gain.is_finite();
+            let is_unknown = estimate.std_error[0] == f32::INFINITY && estimate.gain == f32::INFINITY;
+            assert!(if n > 6 { is_known } else { is_unknown }, "{what}, {n}: {estimate:?}");
         }
     }
 }

@@ -253,6 +253,20 @@ fn wider_registers_change_no_bit() {
     }
 }
 
+/// With beta = 1 an average of any number of batches stays within a part in 2^9 of theirs.
+#[test]
+fn averages_do_not_drift() {
+    let (mut rng, mut state, mut estimate) = (Rng::seed(6), gradient(1, 1), [0.0]);
+    let batch = Batch::new(4, 1, &[0.25], &[0]).unwrap();
+    for step in 1..7_000_001 {
+        let value = 0.7 + 0.02 * rng.uniform_f32();
+        state.estimate(&batch, Solver::Balance, 1.0, &[value], &mut estimate).unwrap();
+        if step % 500_000 == 0 {
+            assert!((estimate[0] / 0.71 - 1.0).abs() < 0.0022, "{step}: {estimate:?}");
+        }
+    }
+}
+
 /// Against weighted averages in f64 of every sum, with batches of different counts.
 #[test]
 fn momentum_is_the_oracle() {

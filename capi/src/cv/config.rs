@@ -91,8 +91,7 @@ pub struct nf_cv_config {
     pub stride: u32,
     /// NF_SOLVER_*
     pub solver: u32,
-    /// NF_PRECISION_*, of accumulators. Arrays are computed in the best that the library was built for, images in
-    /// float.
+    /// NF_PRECISION_*, of accumulators. Arrays take the best that the library was built for, images float.
     pub precision: u32,
     /// NF_NONFINITE_*
     pub nonfinite: u32,
@@ -112,7 +111,8 @@ pub struct nf_cv_config {
 pub struct nf_estimate {
     /// The integral, for each channel; zero for channels that are not there.
     pub mean: [f32; 4],
-    /// Each mean's standard error; infinite of one sample, or where a ratio's luminances cancel.
+    /// Each mean's standard error; infinite of one sample, where a ratio's luminances cancel, and, with `gain`, of
+    /// least squares from no more samples than terms.
     pub std_error: [f32; 4],
     /// Samples used.
     pub samples: u32,

@@ -20,8 +20,7 @@ pub struct nf_cv_image {
     pub height: u32,
     /// Images of the same pixels at other times, which share fits; 0 means 1.
     pub frames: u32,
-    /// Width and height of the windows that pixels share a fit in; 0 means 8. At most 1024 pixels in all frames
-    /// together.
+    /// Width and height of the windows that pixels share a fit in; 0 means 8. At most 1024 pixels over all frames.
     pub window: u32,
     /// Pixels from one window to the next, at most `window`; 0 means half of it. Corrections of overlapping windows are
     /// averaged; the time of an estimate goes with the square of window / stride.

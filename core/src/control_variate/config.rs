@@ -17,7 +17,8 @@ pub enum Estimator {
     Robust,
     /// The fit's residuals on its own samples (Alg. 1). Cheapest; biased O(1/n); needs several samples per term.
     LeastSquares,
-    /// One ridge fit, each sample corrected by the fit to all others, in closed form. Exactly unbiased.
+    /// One ridge fit, each sample corrected by the fit to all others, in closed form. Exactly unbiased, but for
+    /// [`Ridge::Auto`], and next to exactly with control functions.
     LeaveOneOut,
     /// Each fold is corrected by a robust fit to the other folds. Exactly unbiased.
     KFold,
@@ -80,7 +81,8 @@ pub enum Ridge {
     /// The estimator's documented default.
     #[default]
     Default,
-    /// The strength with the smallest leave-one-out error of a few; the default where there are no such errors.
+    /// The strength with the smallest leave-one-out error of a few, which biases leave-one-out; the default where there
+    /// are no such errors.
     Auto,
     /// Penalty per sample on a first-degree coefficient; positive and finite, raised to 1e-12 or in `f32` to 1e-5.
     Fixed(f32),
@@ -233,11 +235,12 @@ impl Config {
 pub struct Estimate {
     /// The integral, for each channel; unused channels are zero.
     pub mean: [f32; 4],
-    /// An estimate of the standard error of each mean; infinite for one sample, and for a luminance ratio of samples
-    /// whose luminances cancel.
+    /// An estimate of the standard error of each mean; infinite for one sample, for least squares of no more samples
+    /// than terms, of which no residual is left to tell, and for a luminance ratio of samples whose luminances cancel.
     pub std_error: [f32; 4],
     /// Samples that were used.
     pub samples: u32,
-    /// Estimated variance relative to the plain mean's, averaged over the channels: 1 means no gain.
+    /// Estimated variance relative to the plain mean's, averaged over the channels: 1 means no gain. Infinite for
+    /// least squares of no more samples than terms.
     pub gain: f32,
 }

@@ -160,7 +160,7 @@ impl<R: Real> Blend<R> {
         let factor = result::press_factor(self.n);
         let own = |fit: Fit<R>| fit.influence * factor * trust::few_left(fit.freedom, self.n);
         let (correction, variance) = self.mixture.estimate(self.plain * factor, self.fits.map(own));
-        Outcome { correction, variance: self.is_told.then_some(variance) }
+        Outcome { correction, variance: Some(if self.is_told { variance } else { PerChannel::all(R::INFINITY) }) }
     }
 
     /// What the error of the mixture's coefficients adds to the variance of an estimate that is corrected by them, as a

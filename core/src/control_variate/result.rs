@@ -15,7 +15,7 @@ use core::hint::black_box;
 pub(crate) struct Outcome<R> {
     /// What to add to the plain mean.
     pub(crate) correction: PerChannel<R>,
-    /// The variance of the estimate; None for the plain mean's, also where the samples are too few to tell another.
+    /// The variance of the estimate, infinite where the samples are too few to tell it; None for the plain mean's.
     pub(crate) variance: Option<PerChannel<R>>,
 }
 
@@ -38,7 +38,7 @@ pub(crate) fn press_factor<R: Real>(n: R) -> R {
 }
 
 /// The variance of the constant term of a fit of so many columns to `n` samples, from the sum of its squared residuals
-/// and its `eccentricity` ([`Centre`]); None if no residual is left over to tell.
+/// and its `eccentricity` ([`Centre`]); infinite if no residual is left over to tell.
 ///
 /// For no column that of the plain mean. With f = n - 1 - k degrees of freedom left, residuals of samples that a fit
 /// has not seen are (n - 1) / f times as long, and, as measured on integrands that no fit follows, so is its own error
@@ -48,16 +48,16 @@ pub(crate) fn residual_variance<R: Real>(
     columns: usize,
     n: R,
     eccentricity: R,
-) -> Option<PerChannel<R>> {
+) -> PerChannel<R> {
     let columns = R::from_usize(columns);
     let freedom = n - R::ONE - columns;
     // A count that comes from a square root is not exact: a half tells one from none.
     if freedom < R::from_f64(0.5) {
-        return None;
+        return PerChannel::all(R::INFINITY);
     }
     let (all, square) = (n - R::ONE, freedom * freedom);
     let factor = Centre::new(eccentricity, columns, n).inflation * all * all * all / (n * square * square);
-    Some(residual * factor)
+    residual * factor
 }
 
 /// What samples say without a fit.
@@ -122,8 +122,8 @@ impl<R: Real> Summary<R> {
             error[channel] = f64::INFINITY;
             if let (Some(variance), Some(plain)) = (&variance, &self.variance) {
                 let (variance, plain) = (variance[channel], plain[channel]);
-                // Of what is no number all that is known is the mean's.
-                let is_known = is_usable && (variance >= R::ZERO || variance < R::ZERO);
+                // Of what is no number all that is known is the mean's; and a constant is no fit's to get wrong.
+                let is_known = is_usable && (variance < R::INFINITY || plain > R::ZERO && variance == R::INFINITY);
                 let variance = if is_known { variance.max(R::ZERO) } else { plain };
                 error[channel] = unit.length(variance.sqrt());
                 if plain > R::ZERO {

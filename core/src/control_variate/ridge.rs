@@ -15,7 +15,8 @@ pub(crate) const MAX_FITS: usize = CHOICES.len();
 const DEFAULT: f64 = 0.01;
 /// What keeps a least-squares system with too few samples solvable, for `f64` and for narrower types.
 const FLOOR: [f64; 2] = [1e-10, 1e-6];
-/// Relative penalty of a control function: next to none, as its maker vouches for it.
+/// Relative penalty of a control function for strengths up to one, and above that its penalty: next to none, as its
+/// maker vouches for it, and as it depends on the samples.
 const CONTROL_PENALTY: f64 = 1e-7;
 
 /// The smallest strength that a caller gets, for `f64` and for narrower types: with less, leverages lose their digits.
@@ -26,7 +27,7 @@ const SMALLEST: [f64; 2] = [1e-12, 1e-5];
 pub(crate) fn control_factor<R: Real>(config: &Config) -> R {
     let strength = strength::<R>(config.ridge, MIXED[0]);
     let least = if config.estimator == Estimator::LeastSquares { 0.0 } else { SMALLEST[usize::from(R::NARROW)] };
-    R::from_f64((least / (strength * CONTROL_PENALTY)).max(1.0))
+    R::from_f64((least / (strength.min(1.0) * CONTROL_PENALTY)).max(1.0))
 }
 
 /// The caller's strength, or without one `otherwise`.
@@ -50,8 +51,9 @@ pub(crate) fn least_squares<R: Real>(ridge: Ridge) -> f64 {
 /// Relative penalties of control functions and basis, where `mean_square` is that of a control function's column.
 pub(crate) fn penalties<R: Real>(config: &Config, basis: &Basis, mean_square: impl Fn(usize) -> R, out: &mut [R]) {
     let (controls, functions) = halves_mut(out, config.controls);
+    let relative = CONTROL_PENALTY / strength::<R>(config.ridge, 1.0).max(1.0);
     for (j, penalty) in controls.iter_mut().enumerate() {
-        *penalty = R::from_f64(CONTROL_PENALTY) * mean_square(j);
+        *penalty = R::from_f64(relative) * mean_square(j);
     }
     basis.penalties(functions);
 }

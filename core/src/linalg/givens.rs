@@ -49,18 +49,15 @@ pub(crate) fn solve<R: Real>(factor: &Triangle<impl Deref<Target = [R]>>, x: &mu
     }
 }
 
-/// The squared length of R'^-1 x, which is x'A^-1 x for A = R'R; `x` is used up. A column with no pivot adds nothing.
-pub(crate) fn inverse_square<R: Real>(factor: &Triangle<impl Deref<Target = [R]>>, x: &mut [R]) -> R {
-    let mut total = R::ZERO;
+/// x := R'^-1 x, with zero for a column that has no pivot.
+pub(crate) fn solve_transposed<R: Real>(factor: &Triangle<impl Deref<Target = [R]>>, x: &mut [R]) {
     for j in 0..x.len() {
-        let Some((before, x_j)) = split_at(x, j) else { return total };
+        let Some((before, x_j)) = split_at(x, j) else { return };
         for (x, &r) in before.iter().zip(factor.left(j)) {
             *x_j -= r * *x;
         }
         *x_j = quotient(*x_j, factor.diagonal(j));
-        total += *x_j * *x_j;
     }
-    total
 }
 
 fn quotient<R: Real>(value: R, pivot: R) -> R {

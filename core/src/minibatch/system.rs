@@ -18,6 +18,10 @@ use crate::matrix::{first, packed_len};
 use crate::mis::linear::{self, Cells, Vector};
 use crate::mis::{MAX_TECHNIQUES, Solver};
 
+/// The most that the weights of all batches add up to: rounding a gradient's averages to `f32` moves them by a part in
+/// 2^25 at each step, in the end by this times as much. Of a power of two, what is kept of them is exact.
+const MOST: f64 = 65536.0;
+
 /// Averages of A, q - 1 and the counts over the batches so far, newer ones counting for more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct System {
@@ -50,7 +54,7 @@ impl System {
         if batch.techniques() != self.techniques {
             return Err(Error::Range);
         }
-        let earlier = f64::from(beta) * self.weight;
+        let earlier = (f64::from(beta) * self.weight).min(MOST - 1.0);
         self.weight = earlier + 1.0;
         let (keep, part) = (earlier / self.weight, 1.0 / self.weight);
         self.error.iter_mut().chain(&mut self.counts).chain(&mut self.cells).for_each(|average| *average *= keep);

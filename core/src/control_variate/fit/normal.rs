@@ -231,7 +231,7 @@ pub(crate) fn least_squares<R: Real>(
     let b = |channel| row_at(coefficients, columns, channel);
     let residual = PerChannel::of(channels, |channel| centred.residual_square(channel, b(channel)));
     let variance = result::residual_variance(residual, columns, centred.normal.count, eccentricity);
-    Outcome { correction, variance }
+    Outcome { correction, variance: Some(variance) }
 }
 
 impl<'a, R: Real> Centred<'a, R> {
