@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use std::collections::HashSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::{Path, PathBuf, is_separator};
 use tempfile::NamedTempFile;
 use temporary::folder;
 
@@ -104,10 +104,8 @@ pub fn check<'a, 'b>(
     let mut seen = HashSet::new();
     for path in paths {
         let place = place(path)?;
-        if is_stream(&place) {
-            continue;
-        }
-        if inputs.contains(&place) {
+        let stream = is_stream(&place);
+        if !stream && inputs.contains(&place) {
             return Err(Error::Input(format!(
                 "{} is an input, which would be replaced: give what is written another name",
                 path.display()
@@ -119,7 +117,9 @@ pub fn check<'a, 'b>(
                 place.display()
             )));
         }
-        places.push((path, place));
+        if !stream {
+            places.push((path, place));
+        }
     }
     temporary::sweep(places.iter().map(|(_, place)| place.as_path()));
     for (path, place) in places {
@@ -132,16 +132,14 @@ pub fn check<'a, 'b>(
 /// made in the folder.
 fn place(path: &Path) -> Result<PathBuf> {
     if is_stream(path) {
-        return Ok(path.to_owned());
+        return Ok(if is_standard_output(path) { STANDARD_OUTPUT.into() } else { path.to_owned() });
     }
     let place = fs::canonicalize(path).or_else(|_| followed(path))?;
-    if let Ok(metadata) = fs::metadata(&place) {
-        if metadata.is_dir() {
-            return Err(Error::Input(format!("{} is a folder: give the name of a file in it", path.display())));
-        }
-        if metadata.is_file() && metadata.permissions().readonly() {
-            return Err(Error::Input(format!("{} is read-only: choose another name or remove it", path.display())));
-        }
+    if place.is_dir() || path.as_os_str().as_encoded_bytes().last().is_some_and(|last| is_separator((*last).into())) {
+        return Err(Error::Input(format!("{} is a folder: give the name of a file in it", path.display())));
+    }
+    if fs::metadata(&place).is_ok_and(|metadata| metadata.is_file() && metadata.permissions().readonly()) {
+        return Err(Error::Input(format!("{} is read-only: choose another name or remove it", path.display())));
     }
     if place.file_name().is_none() {
         return Err(Error::Input(format!("`{}` is not the name of a file", path.display())));
@@ -196,10 +194,11 @@ pub fn is_stream(path: &Path) -> bool {
         || fs::metadata(path).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
 }
 
+const STANDARD_OUTPUT: &str = "/dev/stdout";
 const STANDARD_ERROR: &str = "/dev/stderr";
 
 fn is_standard_output(path: &Path) -> bool {
-    path == "-" || path == "/dev/stdout"
+    path == "-" || path == STANDARD_OUTPUT || path == "/dev/fd/1"
 }
 
 fn write_stream(path: &Path, bytes: &[u8]) -> std::io::Result<()> {

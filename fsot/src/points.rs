@@ -38,11 +38,6 @@ impl Points {
         &self.coordinates
     }
 
-    /// All coordinates, to be changed.
-    pub fn coordinates_mut(&mut self) -> &mut [f32] {
-        &mut self.coordinates
-    }
-
     /// The points, each a slice of `dims` coordinates.
     pub fn iter(&self) -> std::slice::ChunksExact<'_, f32> {
         self.coordinates.chunks_exact(self.dims)

@@ -8,9 +8,11 @@ pub use ending::ending;
 use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::export::points::{Json, Labels, Table};
+use crate::picture::is_linear;
 use crate::points::Points;
 use crate::target::image::ImageTarget;
 use image::error::ImageError;
+use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 use noisefloor::tile::MAGIC;
 use std::io::Cursor;
@@ -20,6 +22,8 @@ use std::path::Path;
 const MOST_DECODED: u64 = 512 << 20;
 /// The most bytes of a first line that says how many numbers follow.
 const LINE: usize = 100;
+/// Some editors begin a text with it.
+const BYTE_ORDER_MARK: char = '\u{feff}';
 const NO_PICTURE: &str = "not a picture that can be read: use PNG, JPEG or OpenEXR";
 
 /// The content of a picture's file, to be decoded by [`decode_image`].
@@ -86,7 +90,11 @@ pub fn text(path: &Path, what: &str) -> Result<String> {
     if binary {
         return Err(none());
     }
-    String::from_utf8(bytes?).map_err(|_| none())
+    let mut text = String::from_utf8(bytes?).map_err(|_| none())?;
+    if text.starts_with(BYTE_ORDER_MARK) {
+        text.remove(0);
+    }
+    Ok(text)
 }
 
 /// A picture, PNG, JPEG or OpenEXR by its content, whatever its name says.
@@ -97,7 +105,7 @@ pub fn image(path: &Path) -> Result<DynamicImage> {
     decode_image(&picture(path)?, path)
 }
 
-/// As [`image`](fn@image), from the content of the file `path`.
+/// As [`image`](fn@image), from the content of the file `path`, upright as its Exif data says.
 ///
 /// # Errors
 /// The content is of no known format, damaged, or of more pixels than 512 MiB hold.
@@ -112,12 +120,15 @@ pub fn decode_image(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
             error => format!("{path} is a damaged {name} file: {error}"),
         })
     };
-    let decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder().map_err(failed)?;
+    let mut decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder().map_err(failed)?;
     if decoder.total_bytes() > MOST_DECODED {
         let bytes = decoder.color_type().bytes_per_pixel();
         return Err(Error::Input(too_large(&path.to_string(), Some(decoder.dimensions()), Some(bytes))));
     }
-    DynamicImage::from_decoder(decoder).map_err(failed)
+    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
+    let mut image = DynamicImage::from_decoder(decoder).map_err(failed)?;
+    image.apply_orientation(orientation);
+    Ok(image)
 }
 
 /// Which of the formats that can be read these bytes begin as, and its name.
@@ -154,7 +165,9 @@ fn png_size(bytes: &[u8]) -> Option<(u32, u32)> {
 /// # Errors
 /// As [`decode_image`]; a value that is negative or not finite; a density of 0 everywhere.
 pub fn density(bytes: &[u8], path: &Path, points: usize, invert: bool) -> Result<ImageTarget> {
-    let picture = decode_image(bytes, path)?.to_luma_alpha32f();
+    let decoded = decode_image(bytes, path)?;
+    let (premultiplied, picture) = (is_linear(&decoded), decoded.to_luma_alpha32f());
+    drop(decoded);
     let (width, height) = picture.dimensions();
     let weights: Vec<f32> = picture
         .pixels()
@@ -162,11 +175,16 @@ pub fn density(bytes: &[u8], path: &Path, points: usize, invert: bool) -> Result
             let [luma, alpha]: [f32; 2] = pixel.0;
             // A value that is refused is refused as it is.
             let inverted = invert && luma.is_finite() && luma >= 0.0;
-            alpha * if inverted { (1.0 - luma).max(0.0) } else { luma }
+            let (white, part) = if premultiplied { (alpha, 1.0) } else { (1.0, alpha) };
+            part * if inverted { (white - luma).max(0.0) } else { luma }
         })
         .collect();
     if weights.iter().all(|weight| *weight == 0.0) {
-        let colour = if invert { "white" } else { "black" };
+        let colour = match invert {
+            _ if picture.pixels().all(|pixel| pixel.0[1] <= 0.0) => "transparent",
+            true => "white",
+            false => "black",
+        };
         return Err(Error::Input(format!(
             "{} is {colour} everywhere: a density of 0 has no place for a point",
             path.display()
@@ -194,7 +212,11 @@ pub fn points(path: &Path) -> Result<Table> {
     };
     let table = table.map_err(|why| Error::Input(format!("{}: {why}", path.display())))?;
     match table.points.dims() {
-        _ if table.points.is_empty() => Err(Error::Input(format!("{} holds no points", path.display()))),
+        _ if table.points.is_empty() => Err(Error::Input(format!(
+            "{} holds no points: give rows of numbers with spaces or commas between them, or JSON such as \
+             {{\"dims\": 2, \"points\": [[0.1, 0.2]]}}",
+            path.display()
+        ))),
         1..=8 => Ok(table),
         dims => Err(Error::Input(format!("{} has {dims} coordinates per point: 1 to 8 are possible", path.display()))),
     }

@@ -150,6 +150,8 @@ fn a_tile_is_told_about_and_exported() {
     let exr = image::open(place.path("t.exr")).unwrap().into_rgb32f();
     assert_eq!(exr.get_pixel(0, 0).0[..2], file.coordinates()[..2]);
     assert!(String::from_utf8(place.read("t.c-header")).unwrap().contains("#define T_SPP 2"));
+    place.succeed("export t.nft --format c-header --name int --out t.h");
+    assert!(String::from_utf8(place.read("t.h")).unwrap().contains("uint16_t tile_int["));
     assert!(String::from_utf8(place.read("t.rust")).unwrap().contains("pub const SPP: usize = 2;"));
 
     place.write("t.toml", String::from_utf8(place.read("t.toml")).unwrap().replace("sha256 = \"", "sha256 = \"0"));
@@ -172,6 +174,19 @@ fn points_go_to_standard_output() {
     for out in ["-", "/dev/stdout"] {
         let printed = place.succeed(&format!("points -n 10 --out {out} {FAST}"));
         assert_eq!(printed.as_bytes(), place.read("p.txt"));
+    }
+    // What is drawn or plotted is alone there, too.
+    GrayImage::from_fn(9, 9, |x, _| Luma([20 * x as u8])).save(place.path("in.png")).unwrap();
+    for (command, file) in [
+        ("stipple in.png -n 9 --iterations 2 --out OUT", "s.png"),
+        ("place -n 9 --iterations 2 --out OUT", "o.csv"),
+        ("points -n 9 --iterations 2 --out q.txt --png OUT", "q.png"),
+        ("measure p.txt --prefix --integrands 2 --plot OUT", "plot.png"),
+    ] {
+        place.succeed(&command.replace("OUT", file));
+        let output = place.run(&command.replace("OUT", "-"));
+        assert!(output.status.success(), "{}", error(&output));
+        assert!(output.stdout == place.read(file), "{command}");
     }
 }
 

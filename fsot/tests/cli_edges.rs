@@ -2,8 +2,11 @@
 
 use crate::cli_support::{Place, error};
 use fsot::export::sidecar::Sidecar;
+use fsot::picture::Photo;
 use fsot::read;
-use image::{GrayImage, Luma, Rgb, Rgb32FImage};
+use fsot::target::Target;
+use image::codecs::jpeg::JpegEncoder;
+use image::{GrayImage, ImageEncoder, Luma, Rgb, Rgb32FImage, Rgba, Rgba32FImage, RgbaImage};
 use serde_json::Value;
 
 const FAST: &str = "--iterations 5";
@@ -181,6 +184,53 @@ fn a_pixel_that_is_no_density_is_refused_inverted_too() {
             let message = found.map(|_| ()).unwrap_err().to_string();
             assert!(message.contains("column 3, row 5"), "{message}");
         }
+    }
+}
+
+/// Half a picture in half a colour: light that is already multiplied by alpha, and values that are not.
+#[test]
+fn transparent_halves() {
+    let place = Place::new();
+    Rgba32FImage::from_fn(8, 8, |x, _| Rgba([0.5, 0.5, 0.5, if x < 4 { 0.5 } else { 1.0 }]))
+        .save(place.path("half.exr"))
+        .unwrap();
+    let centre = |invert| {
+        let target = read::density(&place.read("half.exr"), "half.exr".as_ref(), 16, invert).unwrap();
+        let (mut means, mut density) = ([0.0; 1000], [0.0; 1000]);
+        target.bins(&[1.0, 0.0], &mut means, &mut density, &mut Vec::new());
+        means.iter().sum::<f32>() / 1000.0
+    };
+    assert!((centre(false) - 0.5).abs() < 0.01 && (centre(true) - 0.75).abs() < 0.01);
+    let photo = Photo::read(&place.path("half.exr")).unwrap();
+    assert!(photo.pixels[0][0] > 0.999 && photo.pixels[7][0] < 0.8);
+    // One that is reduced: opaque white beside transparent black.
+    let checks = RgbaImage::from_fn(3000, 3000, |x, y| Rgba([[0; 4], [255; 4]][((x + y) % 2) as usize]));
+    assert!(Photo::new(&checks.into()).unwrap().pixels.iter().flatten().all(|value| *value > 0.999));
+    let mut light = Rgb32FImage::from_pixel(3000, 3000, Rgb([0.25; 3]));
+    light.put_pixel(2990, 2980, Rgb([f32::NAN; 3]));
+    let error = Photo::new(&light.into()).unwrap_err().to_string();
+    assert!(error.contains("column 2990, row 2980"), "{error}");
+}
+
+#[test]
+fn photographs_stand_upright() {
+    let place = Place::new();
+    let mut encoder = JpegEncoder::new(std::fs::File::create(place.path("phone.jpg")).unwrap());
+    // Of one entry: the orientation, a quarter turn.
+    let turned = b"MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0";
+    encoder.set_exif_metadata(turned.to_vec()).unwrap();
+    encoder.encode_image(&GrayImage::from_fn(64, 32, |x, _| Luma([if x < 32 { 0 } else { 255 }]))).unwrap();
+    let picture = read::image(&place.path("phone.jpg")).unwrap().into_luma8();
+    assert_eq!(picture.dimensions(), (32, 64));
+    assert!(picture.get_pixel(16, 4).0[0] < 64 && picture.get_pixel(16, 60).0[0] > 192);
+}
+
+#[test]
+fn points_after_a_byte_order_mark() {
+    let place = Place::new();
+    for text in ["0.5 0.25\n", "x,y\n0.5,0.25\n", "{\"dims\": 2, \"points\": [[0.5, 0.25]]}"] {
+        place.write("p", format!("\u{feff}{text}"));
+        assert_eq!(read::points(&place.path("p")).unwrap().points.coordinates(), [0.5, 0.25]);
     }
 }
 

@@ -31,7 +31,11 @@ fn numbers_out_of_range() {
         ("tile -d 9 --out t.nft", "dims is 9"),
         ("tile -d 0 --out t.nft", "dims is 0"),
         ("tile --size 16 --box-share -1 --out t.nft", "share is -1"),
-        ("tile --size 16 --box-weight -1 --out t.nft", "weight is -1"),
+        ("tile --size 16 --spp 2 --box-weight -1 --out t.nft", "weight is -1"),
+        ("tile --size 16 --box-weight 2 --out t.nft", "give --box-share, too"),
+        ("tile --size 16 --reconstruction gaussian:16 --out t.nft", "give --box-share, too"),
+        ("tile --size 16 --temporal 4 --temporal-kernel ema:0.5 --box-share .6 --out t.nft", "0.6; use at most 0.5"),
+        ("tile --size 16 --temporal 4 --temporal-kernel ema:1e-7 --out t.nft", "from 1e-6 to 1, not 0.0000001"),
         ("tile --kernel gaussian:0 --out t.nft", "Gaussian"),
         ("tile --kernel sinc --out t.nft", "not a kernel"),
         ("tile --size 16 --temporal 1 --temporal-kernel mantiuk --out t.nft", "frames"),
@@ -57,6 +61,7 @@ fn pictures_that_are_none() {
     let place = Place::new();
     GrayImage::new(16, 16).save(place.path("black.png")).unwrap();
     GrayImage::from_pixel(16, 16, image::Luma([255])).save(place.path("white.png")).unwrap();
+    image::RgbaImage::new(16, 16).save(place.path("clear.png")).unwrap();
     let png = place.read("white.png");
     place.write("cut.png", &png[..png.len() / 2]);
     place.write("empty.png", "");
@@ -67,13 +72,14 @@ fn pictures_that_are_none() {
         ("--density missing.png", "missing.png"),
         ("--density black.png", "black.png is black everywhere"),
         ("--density white.png --invert", "white.png is white everywhere"),
+        ("--density clear.png", "clear.png is transparent everywhere"),
         ("--density cut.png", "cut.png is a damaged PNG file"),
         ("--density empty.png", "empty.png is empty"),
         ("--density text.png", "text.png is not a picture"),
         ("--density broken.jpg", "broken.jpg is a damaged JPEG file"),
         ("--density folder.png", "folder.png is a folder"),
         ("--density white.png -d 3", "use -d 2"),
-        ("--density white.png --toroidal", "torus"),
+        ("--density white.png --toroidal", "cannot be used with '--toroidal'"),
         ("--invert", "--density"),
     ] {
         place.refuse(&format!("points -n 10 {options} --out p.txt"), message);
@@ -96,6 +102,7 @@ fn class_files_that_are_none() {
         ("binary.toml", "not text"),
         ("box.json", "0.7"),
         ("picture.toml", "none.png"),
+        ("picture.toml --density none.png", "picture.toml has densities of its own: leave out --density"),
         ("2color --progressive 3", "--progressive"),
     ] {
         place.refuse(&format!("points -n 10 --classes {classes} --out p.txt"), message);
@@ -113,6 +120,10 @@ fn outputs_that_cannot_be() {
     for (options, message) in [
         ("--out missing/p.txt", "the folder missing does not exist"),
         ("--out folder", "folder is a folder"),
+        ("--out new/", "new/ is a folder"),
+        ("--out p.txt --checkpoint new/", "new/ is a folder"),
+        ("--out - --png -", "twice"),
+        ("--out - --png /dev/stdout", "twice"),
         ("--out locked.txt", "locked.txt is read-only"),
         ("--out locked.txt/p.txt", "does not exist"),
         ("--out p.txt --png missing/p.png", "the folder missing does not exist"),
@@ -125,6 +136,9 @@ fn outputs_that_cannot_be() {
         place.refuse(&format!("points -n 10 {options} --iterations 3"), message);
     }
     place.refuse("tile --size 16 --out t.toml --iterations 3", "twice");
+    place.write("cfg.toml", "mine = 1");
+    place.refuse("tile --size 16 --out cfg.nft --iterations 3", "cfg.toml is no such sidecar, and would be replaced");
+    place.refuse("sampler --out cfg.bin --iterations 1", "cfg.toml is no such sidecar");
 }
 
 #[test]
@@ -206,6 +220,7 @@ fn tiles_that_are_none() {
         place.refuse(&format!("measure {name}"), message);
     }
     place.refuse("export t.nft --format bmp --out x", "bmp");
+    place.refuse("export t.nft --format png --name foo --out x", "--name is for the arrays");
     place.refuse("export t.nft --format raw --out missing/x", "the folder missing does not exist");
     place.refuse("export t.nft --format raw --out /dev/full", "No space left");
 }

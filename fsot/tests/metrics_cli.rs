@@ -105,6 +105,18 @@ fn prints_and_draws_errors_of_prefixes() {
 }
 
 #[test]
+fn scenes_without_an_error_are_refused() {
+    let folder = TempDir::new().unwrap();
+    for values in [[0.0; 16], [0.1; 16], std::array::from_fn(|i| if i % 2 == 0 { 1.0 } else { -1.0_f32 })] {
+        let table = [b"noisefloor-scene 2 2 2\n".to_vec(), values.map(f32::to_le_bytes).concat()].concat();
+        let path = folder.path().join("flat.table");
+        std::fs::write(&path, table).unwrap();
+        let error = fsot::metrics::scenes::SceneTable::read(&path).err().unwrap().to_string();
+        assert!(error.contains("flat.table") && error.contains("leave it out"), "{error}");
+    }
+}
+
+#[test]
 fn draws_spectra() {
     let folder = TempDir::new().unwrap();
     let files = [1, 2].map(|seed| file(&folder, &format!("{seed}.txt"), &text(&random(64, 3, seed), |_| None)));
@@ -131,6 +143,7 @@ fn bad_input_is_refused_and_nothing_written() {
     let word = file(&folder, "word.txt", "0.1 0.2\n0.3 zero\n");
     let ragged = file(&folder, "ragged.txt", "0.1 0.2\n0.3\n");
     let ragged_csv = file(&folder, "ragged.csv", "0.1,0.2\n0.3\n");
+    let semicolons = file(&folder, "semicolons.csv", "0.1;0.2\n");
     let table = file(&folder, "table.bin", "no table");
     let empty = file(&folder, "empty.txt", "");
     let tile = file(&folder, "tile.nft", "not a tile");
@@ -144,6 +157,11 @@ fn bad_input_is_refused_and_nothing_written() {
     fail(&folder, &["measure", &ragged], &["ragged.txt", "line 2"]);
     fail(&folder, &["measure", &ragged_csv], &["ragged.csv", "line 2 has 1 column"]);
     fail(&folder, &["measure", "--scenes", "/nowhere", &table], &["table.bin", "table.toml", "fsot sampler"]);
+    fail(&folder, &["measure", "--scenes", "/nowhere", "--integrands", "3"], &["--integrands"]);
+    fail(&folder, &["measure", "--scenes", "/nowhere", "--ema", "7"], &["--ema"]);
+    fail(&folder, &["measure", &good, "--ema", "0.5", "--quick"], &["for tiles, and there is none"]);
+    fail(&folder, &["measure", &good, "--prefix", "--quick"], &["--quick"]);
+    fail(&folder, &["measure", &semicolons], &["semicolons.csv holds no points: give rows of numbers"]);
     fail(&folder, &["measure", &empty], &["empty.txt"]);
     fail(&folder, &["measure", &tile], &["tile.nft"]);
     fail(&folder, &["measure", "--size", "7", &good], &["64 points", "7x7"]);

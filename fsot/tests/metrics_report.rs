@@ -2,7 +2,7 @@
 
 use crate::metrics_common::random;
 use fsot::metrics::tile::{TileOptions, TileView};
-use fsot::metrics::{by_class, check, measure, measure_tile, prefix_errors, quick, select};
+use fsot::metrics::{check, measure, measure_tile, prefix_errors, quick};
 use fsot::points::Points;
 
 #[test]
@@ -39,18 +39,6 @@ fn the_fewest_and_the_most_equal_points_are_measured() {
 }
 
 #[test]
-fn classes_are_measured_alone() {
-    let points = random(90, 2, 1);
-    let classes: Vec<usize> = (0..90).map(|i| if i % 3 == 0 { 7 } else { 2 }).collect();
-    let reports = by_class(&points, &classes).unwrap();
-    assert_eq!(reports.iter().map(|r| (r.0, r.1.points)).collect::<Vec<_>>(), [(2, 60), (7, 30)]);
-    let alone = measure(&select(&points, |i| i % 3 == 0)).unwrap();
-    assert_eq!(reports[1].1.to_string(), alone.to_string());
-    assert!(by_class(&points, &classes[1..]).is_err());
-    assert!(quick(&points).unwrap().integration.is_none());
-}
-
-#[test]
 fn the_number_of_threads_changes_no_bit() {
     let points = random(6000, 3, 2);
     let coordinates = random(16 * 16 * 2 * 3, 2, 3);
@@ -73,6 +61,7 @@ fn text_is_aligned() {
     for name in ["P_low", "P_max", "anisotropy", "NN", "NN torus min", "L2* e3", "SW2 e3", "half-spaces", "Gaussians"] {
         assert!(text.lines().any(|line| line.trim_start().starts_with(name)), "{name} in\n{text}");
     }
+    assert!(text.starts_with("  points                 100  in 2 dimensions\n"), "{text}");
     // Names, then numbers that end in the same column.
     assert!(text.lines().all(|line| line.as_bytes()[27] != b' ' && &line[28..30] == "  "), "{text}");
     let coordinates = random(4 * 4, 3, 1);

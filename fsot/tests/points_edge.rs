@@ -1,11 +1,12 @@
 //! Small, empty, uneven and wrong problems.
 
-use fsot::class::{self, Class, ClassCoordinates, ClassFunction};
+use fsot::class::{self, Class, ClassCoordinates, ClassFunction, Step};
 use fsot::optimize::{Domain, Optimizer, Problem, Quality, optimize};
 use fsot::points::Points;
 use fsot::run::Optimization;
 use fsot::target::{Function, Uniform};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 fn short(points: usize, dims: usize) -> Problem {
     Problem { quality: Quality::Iterations(60), ..Problem::new(points, dims) }
@@ -135,6 +136,18 @@ fn prefixes_end_where_they_should() {
     assert_eq!(all.function, ClassFunction::Ramp { rising: false });
 }
 
+/// A staircase of as many steps as points would take minutes if each point were looked for from the first step on.
+#[test]
+fn long_staircases_are_searched_in_halves() {
+    let (start, count) = (Instant::now(), 1 << 18);
+    let steps = (1..=count).map(|i| Step { to: i as f32 / count as f32, value: (i % 2) as f32 });
+    let function = ClassFunction::Staircase(steps.collect());
+    let value = |i: usize| ClassCoordinates::Index.value(&function, i, count);
+    assert!((0..count).all(|i| value(i) == ((i + 1) % 2) as f32));
+    assert_eq!(function.value(&[1.0]), 0.0);
+    assert!(start.elapsed() < Duration::from_secs(10));
+}
+
 #[test]
 fn the_plane_chooses_points() {
     let places: Vec<[f32; 2]> = (0..64).map(|i| [(i % 8) as f32 / 8.0, (i / 8) as f32 / 8.0]).collect();
@@ -143,7 +156,6 @@ fn the_plane_chooses_points() {
     problem.classes = vec![
         class_of(ClassFunction::Rectangle { from: [0.0, 0.0], to: [0.5, 0.5] }, 2),
         class_of(ClassFunction::Gaussian { center: vec![0.5, 0.5], sigma: 0.2 }, 2),
-        class_of(ClassFunction::Image { width: 2, values: vec![1.0, 0.5, 0.25, 0.0] }, 2),
     ];
     assert!(inside(&optimize(problem).unwrap()));
 }
@@ -178,7 +190,6 @@ fn every_error_says_what_is_wrong() {
         (with(|p| p.classes[0].function = ClassFunction::Tabulated(vec![2.0])), "holds 2"),
         (with(|p| p.classes[0].function = ClassFunction::Gaussian { center: vec![0.5], sigma: 0.0 }), "sigma 0"),
         (with(|p| p.classes[0].function = ClassFunction::Gaussian { center: vec![], sigma: 1.0 }), "one or two"),
-        (with(|p| p.classes[0].function = ClassFunction::Image { width: 2, values: vec![0.5; 3] }), "whole rows"),
         (
             with(|p| p.classes[0].function = ClassFunction::Rectangle { from: [0.0; 2], to: [1.0; 2] }),
             "points have only an index",

@@ -151,11 +151,13 @@ fn arguments_that_make_no_sense() {
         (&["in.png", "-n", "5", "--black", "1.5", "-o", "out.png"], "0 to 1"),
         (&["in.png", "-n", "5", "--black", "-1", "-o", "out.png"], "0 to 1"),
         (&["in.png", "-n", "5", "--black", "nan", "-o", "out.png"], "0 to 1"),
+        (&["in.png", "-n", "5", "--black", "0.5", "-o", "out.png"], "--cmyk"),
         (&["in.png", "-n", "5", "--cmyk", "--invert", "-o", "out.png"], "--invert"),
         (&["in.png", "-n", "5", "--window", "3", "-o", "out.png"], "--frames"),
         (&["in.png", "-n", "5", "-o", "nowhere/out.png"], "nowhere"),
         (&["--frames", "in.png", "--window", "9", "--step", "10", "-o", "out.png"], "step of 10"),
         (&["--frames", "none*.png", "--window", "9", "--step", "3", "-o", "out.png"], "no file matches"),
+        (&["--frames", "in.png", "--window", "9", "--step", "3", "-o", "-"], "every frame is a file"),
         (&["--frames", "[", "--window", "9", "--step", "3", "-o", "out.png"], "pattern"),
         (&["--frames", "in.png", "--window", "9", "--step", "3", "-n", "10", "-o", "out.png"], "have 9 points"),
     ] {

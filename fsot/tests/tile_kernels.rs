@@ -1,6 +1,6 @@
 //! Kernels: what they are, how they are written, what is refused.
 
-use fsot::tile::{Kernel, TemporalKernel, TileProblem, TileSamples, presets};
+use fsot::tile::{Kernel, TemporalKernel, TileProblem, presets};
 
 #[test]
 fn the_perceptual_kernel_is_a_disc_of_radius_6() {
@@ -39,6 +39,14 @@ fn convolutions_have_two_factors_and_a_largest_radius() {
     }
     let wide = Kernel::Tabulated(vec![vec![1.0; 301]; 301]);
     assert!(Kernel::Convolution(Box::new(wide), Box::new(Kernel::Box)).taps().is_err());
+}
+
+/// At half the tile's size, pixels on either side would be one.
+#[test]
+fn a_kernel_does_not_meet_itself() {
+    let of = |sigma| TileProblem { kernel: Kernel::Gaussian(sigma), ..TileProblem::new(8, 1, 2) };
+    assert!(of(1.3).validate().is_ok());
+    assert!(of(1.4).validate().unwrap_err().to_string().contains("radius of 4 pixels: too wide"));
 }
 
 #[test]
@@ -106,22 +114,6 @@ fn the_eye_answers_within_a_quarter_of_a_second() {
     assert!(weights.len() <= 16, "{weights:?}");
     let zero = weights[peak..].windows(3).position(|w| w[1] < w[0] && w[1] < w[2]);
     assert!(zero.is_some(), "no change of sign: {weights:?}");
-}
-
-#[test]
-fn samples_are_checked_and_quantised() {
-    assert!(TileSamples::new(2, 1, 1, 1, vec![0.0; 3]).is_err());
-    assert!(TileSamples::new(2, 1, 1, 1, vec![0.0, 0.5, 1.0, 0.0]).is_err());
-    assert!(TileSamples::new(2, 1, 1, 1, vec![0.0, 0.5, f32::NAN, 0.0]).is_err());
-    assert!(TileSamples::new(usize::MAX, 2, 1, 1, Vec::new()).is_err());
-    let tile = TileSamples::new(2, 2, 1, 1, vec![0.0, 0.5, 0.999_999_94, 0.25, 0.1, 0.2, 0.3, 0.4]).unwrap();
-    assert_eq!(tile.pixel(1, 0, 0), [0.999_999_94, 0.25]);
-    assert_eq!(tile.pixel(3, 2, 5), [0.999_999_94, 0.25]);
-    assert_eq!(tile.quantise(8).unwrap()[..4], [0, 128, 255, 64]);
-    assert_eq!(tile.quantise(16).unwrap()[2], 65535);
-    assert!(tile.quantise(0).is_err() && tile.quantise(17).is_err());
-    assert_eq!(tile.prefix(1).unwrap().coordinates, [0.0, 0.999_999_94, 0.1, 0.3]);
-    assert!(tile.prefix(0).is_err() && tile.prefix(3).is_err());
 }
 
 #[test]

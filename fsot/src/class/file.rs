@@ -80,11 +80,6 @@ impl ClassFile {
         Ok(file)
     }
 
-    /// Reads a class file.
-    pub fn read(path: &Path) -> Result<ClassFile> {
-        ClassFile::parse(path, &read::text(path, "a class file")?)
-    }
-
     /// Its classes, for points of `dims` coordinates; `image` opens the targets that are pictures.
     pub fn classes(self, dims: usize, mut image: impl FnMut(&Path) -> Result<Arc<dyn Target>>) -> Result<Vec<Class>> {
         let uniform: Arc<dyn Target> = Arc::new(Uniform::new(dims));

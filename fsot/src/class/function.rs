@@ -1,7 +1,6 @@
 //! Class functions.
 
 use crate::Error;
-use crate::counted::counted;
 use crate::error::Result;
 use serde::Deserialize;
 
@@ -55,13 +54,6 @@ pub enum ClassFunction {
     },
     /// Values at equidistant coordinates from 0 to 1, linear between them; one value is a constant.
     Tabulated(Vec<f32>),
-    /// Values of the image plane's pixels, row after row: the coordinate's pixel counts.
-    Image {
-        /// Pixels per row.
-        width: usize,
-        /// All pixels.
-        values: Vec<f32>,
-    },
 }
 
 impl ClassFunction {
@@ -74,7 +66,9 @@ impl ClassFunction {
             ClassFunction::Rectangle { from, to } => {
                 indicator(c.iter().zip(from.iter().zip(to)).all(|(c, (from, to))| c >= from && c < to))
             }
-            ClassFunction::Staircase(steps) => steps.iter().find(|step| x < step.to).map_or(0.0, |step| step.value),
+            ClassFunction::Staircase(steps) => {
+                steps.get(steps.partition_point(|step| step.to <= x)).map_or(0.0, |step| step.value)
+            }
             ClassFunction::Ramp { rising } => (if *rising { x } else { 1.0 - x }).clamp(0.0, 1.0),
             ClassFunction::Gaussian { center, sigma } => {
                 let squared: f32 = c.iter().zip(center).map(|(c, center)| (c - center) * (c - center)).sum();
@@ -89,13 +83,6 @@ impl ClassFunction {
                     Some([a]) => *a,
                     _ => 0.0,
                 }
-            }
-            ClassFunction::Image { width, values } => {
-                let width = (*width).max(1);
-                let height = values.len() / width;
-                let cell = |c: f32, cells: usize| ((c.max(0.0) * cells as f32) as usize).min(cells.saturating_sub(1));
-                let y = c.get(1).copied().unwrap_or(0.0);
-                values.get(cell(y, height) * width + cell(x, width)).copied().unwrap_or(0.0)
             }
         }
     }
@@ -142,25 +129,18 @@ impl ClassFunction {
                     Ok(())
                 }
             }
-            ClassFunction::Tabulated(values) | ClassFunction::Image { values, .. } => {
-                if let ClassFunction::Image { width, .. } = self
-                    && (*width == 0 || values.len() % width != 0)
-                {
-                    return fail(format!("{} in rows of {width}: give whole rows", counted(values.len(), "pixel")));
-                }
-                match values.iter().find(|&&value| !unit(value)) {
-                    Some(value) => fail(format!("the table holds {value}: values are in [0, 1]")),
-                    None if values.is_empty() => fail("the table is empty: give at least one value".into()),
-                    None => Ok(()),
-                }
-            }
+            ClassFunction::Tabulated(values) => match values.iter().find(|&&value| !unit(value)) {
+                Some(value) => fail(format!("the table holds {value}: values are in [0, 1]")),
+                None if values.is_empty() => fail("the table is empty: give at least one value".into()),
+                None => Ok(()),
+            },
         }
     }
 
     /// How many numbers its class coordinate has at most: 1, or 2 for functions of the image plane.
     pub fn coordinates(&self) -> usize {
         match self {
-            ClassFunction::Rectangle { .. } | ClassFunction::Image { .. } => 2,
+            ClassFunction::Rectangle { .. } => 2,
             ClassFunction::Gaussian { center, .. } => center.len().clamp(1, 2),
             _ => 1,
         }

@@ -4,7 +4,9 @@ use crate::checkpoint::digest;
 use crate::error::{Error, Result};
 use crate::metrics::TileReport;
 use crate::metrics::tile::Energies;
+use crate::output::is_stream;
 use crate::read;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -94,25 +96,12 @@ impl Quality {
 }
 
 impl Sidecar {
-    /// `NAME.toml` for `NAME.nft`.
-    pub fn path(tile: &Path) -> PathBuf {
-        tile.with_extension("toml")
-    }
-
-    /// The content of the file.
-    ///
-    /// # Errors
-    /// Never, but for a value that TOML has no place for.
-    pub fn encode(&self) -> Result<Vec<u8>> {
-        encode(self)
-    }
-
     /// Reads the sidecar of a tile; none if there is no such file.
     ///
     /// # Errors
     /// The file cannot be read or is no sidecar.
     pub fn read(tile: &Path) -> Result<Option<Sidecar>> {
-        let path = Sidecar::path(tile);
+        let path = path(tile);
         let text = match read::text(&path, "a sidecar") {
             Err(Error::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             text => text?,
@@ -128,8 +117,27 @@ impl Sidecar {
     }
 }
 
+/// Whether a sidecar of the kind `S` may be written at `path`: nothing is there, or another of them.
+///
+/// # Errors
+/// Something else is there, which would be lost.
+pub fn check<S: DeserializeOwned>(path: &Path) -> Result<()> {
+    if is_stream(path) || !path.exists() || read::text(path, "").is_ok_and(|text| toml::from_str::<S>(&text).is_ok()) {
+        return Ok(());
+    }
+    Err(Error::Input(format!("{} is no such sidecar, and would be replaced: choose another --out", path.display())))
+}
+
+/// `NAME.toml` for `NAME.nft` or `NAME.bin`.
+pub fn path(described: &Path) -> PathBuf {
+    described.with_extension("toml")
+}
+
 /// The content of a sidecar's file.
-pub(crate) fn encode(sidecar: &impl Serialize) -> Result<Vec<u8>> {
+///
+/// # Errors
+/// Never, but for a value that TOML has no place for.
+pub fn encode(sidecar: &impl Serialize) -> Result<Vec<u8>> {
     toml::to_string(sidecar)
         .map(String::into_bytes)
         .map_err(|error| Error::Input(format!("cannot write the sidecar: {error}")))

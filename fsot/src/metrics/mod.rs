@@ -20,7 +20,7 @@ pub mod tile;
 pub mod transport;
 
 pub use integration::{PrefixError, log_spaced, prefix_errors};
-pub use report::{PointReport, by_class, measure, quick, select};
+pub use report::{PointReport, measure, quick, select};
 pub use spectrum::Spectrum;
 pub use tile::{TileOptions, TileReport, TileView, error_spectrum, measure_energies, measure_tile};
 

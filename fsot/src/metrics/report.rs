@@ -5,8 +5,7 @@ use super::integration::{Integration, integration};
 use super::neighbours::{Neighbours, neighbours};
 use super::spectrum::{Spectrum, SpectrumSummary};
 use super::transport::{Transport, transport};
-use crate::counted::counted;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::points::Points;
 use serde::Serialize;
 
@@ -69,20 +68,4 @@ pub fn quick(points: &Points) -> Result<PointReport> {
 pub fn select(points: &Points, mut wanted: impl FnMut(usize) -> bool) -> Points {
     let chosen = points.iter().enumerate().filter(|(i, _)| wanted(*i)).flat_map(|(_, p)| p.iter().copied());
     Points::new(points.dims(), chosen.collect())
-}
-
-/// Measures the points of every class that occurs, ascending: (class, report). Errors: not as many classes as points;
-/// see [`check`](super::check).
-pub fn by_class(points: &Points, classes: &[usize]) -> Result<Vec<(usize, PointReport)>> {
-    if classes.len() != points.len() {
-        return Err(Error::input(format!(
-            "{} for {}: give each point one",
-            counted(classes.len(), "class"),
-            counted(points.len(), "point")
-        )));
-    }
-    let mut present = classes.to_vec();
-    present.sort_unstable();
-    present.dedup();
-    present.into_iter().map(|class| Ok((class, measure(&select(points, |i| classes[i] == class))?))).collect()
 }

@@ -21,9 +21,9 @@ fn number(x: f64) -> String {
 
 impl Display for PointReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        writeln!(f, "  {:<14}{:>12}  in {}", "points", self.points, counted(self.dims, "dimension"))?;
         let mut line =
             |name: &str, value: f64, meaning: &str| writeln!(f, "  {name:<14}{:>12}  {meaning}", number(value));
-        line("points", self.points as f64, &format!("in {}", counted(self.dims, "dimension")))?;
         if let [PlaneSpectrum { summary: s, .. }] = &self.spectra[..] {
             line("P_low", s.low, "mean power below half the principal frequency (random 1)")?;
             let at = number(s.peak_frequency);

@@ -2,11 +2,12 @@
 
 use super::colour::encode;
 use crate::error::{Error, Result};
-use image::DynamicImage;
+use image::imageops::thumbnail;
+use image::{DynamicImage, GenericImageView, Rgba, Rgba32FImage};
 use std::path::Path;
 
 /// Larger pictures are reduced to about this many pixels when they are read: more than any number of dots can show.
-const MAX_PIXELS: u64 = 8_000_000;
+const MAX_PIXELS: f64 = 8e6;
 
 /// A picture in colour.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,26 +41,18 @@ impl Photo {
         if width == 0 || height == 0 {
             return Err(Error::input("the picture has no pixels"));
         }
-        let pixels = u64::from(width) * u64::from(height);
-        if pixels > MAX_PIXELS {
-            let scale = (MAX_PIXELS as f64 / pixels as f64).sqrt();
-            let side = |length: u32| ((f64::from(length) * scale) as u32).max(1);
-            return Photo::new(&image.thumbnail_exact(side(width), side(height)));
+        let linear = is_linear(image);
+        let opaque = || !image.color().has_alpha() || image.pixels().all(|(.., Rgba([.., alpha]))| alpha == 255);
+        if let Some([width, height]) = reduced(width, height).filter(|_| !linear && opaque()) {
+            return Photo::new(&image.thumbnail_exact(width, height));
         }
-        let linear = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
-        let rgba = image.to_rgba32f();
-        let mut pixels = Vec::with_capacity(pixels as usize);
-        for (x, y, pixel) in rgba.enumerate_pixels() {
-            if !pixel.0.iter().all(|value| value.is_finite()) {
-                return Err(Error::Input(format!("the pixel at column {x}, row {y} is {:?}, not finite", pixel.0)));
-            }
-            let [red, green, blue, alpha] = pixel.0.map(|value| value.clamp(0.0, 1.0));
-            pixels.push([red, green, blue].map(|value| {
-                let value = value * alpha + (1.0 - alpha);
-                if linear { encode(value) } else { value }
-            }));
+        let mut rgba = over_white(image)?;
+        while let Some([width, height]) = reduced(rgba.width(), rgba.height()) {
+            rgba = thumbnail(&rgba, width, height);
         }
-        Ok(Photo { width: width as usize, height: height as usize, pixels })
+        let value = |value: f32| if linear { encode(value.clamp(0.0, 1.0)) } else { value };
+        let pixels = rgba.pixels().map(|Rgba([red, green, blue, _])| [*red, *green, *blue].map(value)).collect();
+        Ok(Photo { width: rgba.width() as usize, height: rgba.height() as usize, pixels })
     }
 
     /// A picture from a function of column and row.
@@ -73,4 +66,29 @@ impl Photo {
         let longer = self.width.max(self.height) as f32;
         [self.width as f32 / longer, self.height as f32 / longer]
     }
+}
+
+/// Whether a picture's values are light, and already multiplied by alpha: those of OpenEXR are.
+pub(crate) fn is_linear(image: &DynamicImage) -> bool {
+    matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_))
+}
+
+/// Of a picture with too many pixels, the sides to reduce it to.
+fn reduced(width: u32, height: u32) -> Option<[u32; 2]> {
+    let scale = (MAX_PIXELS / (f64::from(width) * f64::from(height))).sqrt();
+    (scale < 1.0).then(|| [width, height].map(|length| ((f64::from(length) * scale) as u32).max(1)))
+}
+
+/// A picture on white paper.
+fn over_white(image: &DynamicImage) -> Result<Rgba32FImage> {
+    let mut rgba = image.to_rgba32f();
+    for (x, y, Rgba(pixel)) in rgba.enumerate_pixels_mut() {
+        if !pixel.iter().all(|value| value.is_finite()) {
+            return Err(Error::Input(format!("the pixel at column {x}, row {y} is {pixel:?}, not finite")));
+        }
+        let alpha = pixel[3].clamp(0.0, 1.0);
+        let part = if is_linear(image) { 1.0 } else { alpha };
+        *pixel = pixel.map(|value| value * part + (1.0 - alpha));
+    }
+    Ok(rgba)
 }

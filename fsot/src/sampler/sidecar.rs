@@ -9,7 +9,7 @@ use crate::export::sidecar;
 use crate::read;
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A sidecar.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,19 +79,6 @@ impl SamplerSidecar {
             octaves: SamplerOctave::all(report),
         }
     }
-
-    /// `NAME.toml` for `NAME.bin`.
-    pub fn path(table: &Path) -> PathBuf {
-        table.with_extension("toml")
-    }
-
-    /// The content of the file.
-    ///
-    /// # Errors
-    /// Never, but for a value that TOML has no place for.
-    pub fn encode(&self) -> Result<Vec<u8>> {
-        sidecar::encode(self)
-    }
 }
 
 /// Reads a table, whose shape its sidecar says.
@@ -99,7 +86,7 @@ impl SamplerSidecar {
 /// # Errors
 /// One of the two cannot be read, or is none, or describes another.
 pub fn read(path: &Path) -> Result<SamplerTable> {
-    let beside = SamplerSidecar::path(path);
+    let beside = sidecar::path(path);
     let text = read::text(&beside, "a sidecar").map_err(|error| match error {
         Error::Io { path: missing, source } if source.kind() == ErrorKind::NotFound => {
             let (table, missing) = (path.display(), missing.display());

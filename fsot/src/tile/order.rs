@@ -71,11 +71,11 @@ mod tests {
     fn random(size: usize, spp: usize, dims: usize) -> TileSamples {
         let mut rng = stream(1, 2, 3);
         let coordinates = (0..size * size * spp * dims).map(|_| rng.uniform_f32()).collect();
-        TileSamples::new(size, spp, dims, 1, coordinates).unwrap()
+        TileSamples { size, spp, dims, frames: 1, coordinates }
     }
 
     fn points(samples: &TileSamples, place: usize) -> Vec<&[f32]> {
-        samples.pixel(place % samples.size, place / samples.size, 0).chunks_exact(samples.dims).collect()
+        samples.coordinates.chunks_exact(samples.dims).skip(place * samples.spp).take(samples.spp).collect()
     }
 
     #[test]

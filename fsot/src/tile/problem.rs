@@ -16,7 +16,7 @@ const MAX_DIRECTIONS: usize = 16;
 /// A tile to be optimised. [`TileProblem::new`] gives one whose parameters were tuned; any may be changed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileProblem {
-    /// Pixels along each side: a power of two from 8 to 1024, at least twice the kernel's radius.
+    /// Pixels along each side: a power of two from 8 to 1024, more than twice the kernel's radius.
     pub size: usize,
     /// Samples per pixel: a power of two from 1 to 256.
     pub spp: usize,
@@ -158,9 +158,9 @@ impl TileProblem {
         check((0.0..=1.0).contains(&self.frame_share), "the frame share", self.frame_share, "0 to 1")?;
         check(
             self.temporal.is_none() || share + self.frame_share <= 1.0,
-            "the shares of the box and frame classes together",
-            share + self.frame_share,
-            "at most 1",
+            "the box class's share",
+            share,
+            &format!("at most {}, as the slices of single frames have the rest", 1.0 - self.frame_share),
         )?;
         let Projections { axis, plane } = self.projections;
         check((0.0..=1.0).contains(&axis), "the probability of an axis", axis, "0 to 1")?;

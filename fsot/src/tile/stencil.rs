@@ -114,7 +114,7 @@ fn over_time(spatial: &[Tap], weights: &[f32]) -> Vec<Tap> {
 fn narrow(kernel: &Kernel, size: usize) -> Result<Vec<Tap>> {
     let taps = sorted(kernel.taps()?);
     let radius = taps.iter().map(|tap| tap.dx.abs().max(tap.dy.abs())).max().unwrap_or(0) as usize;
-    if 2 * radius > size {
+    if 2 * radius >= size {
         return Err(Error::input(format!(
             "the kernel {kernel} has a radius of {}: too wide for a tile of {size} pixels",
             counted(radius, "pixel")

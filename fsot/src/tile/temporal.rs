@@ -15,8 +15,8 @@ const CUT: f32 = 0.05;
 /// image, so that the animation loops.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TemporalKernel {
-    /// The exponential moving average of temporal anti-aliasing, `a (1 - a)^k` for the frame k frames ago: a above 0
-    /// and at most 1.
+    /// The exponential moving average of temporal anti-aliasing, `a (1 - a)^k` for the frame k frames ago: a from
+    /// 1e-6 to 1.
     Ema(f32),
     /// The eye's response, sustained plus transient, at [`FRAME_RATE`]: R. Mantiuk et al., "FovVideoVDP: A Visible
     /// Difference Predictor for Wide Field-of-View Video", 2021.
@@ -57,9 +57,9 @@ impl TemporalKernel {
     fn response(&self, frames: usize) -> Result<Vec<f32>> {
         match self {
             TemporalKernel::Ema(alpha) => {
-                if !(*alpha > 0.0 && *alpha <= 1.0) {
+                if !(*alpha >= 1e-6 && *alpha <= 1.0) {
                     return Err(Error::input(format!(
-                        "an exponential moving average has a factor above 0 and at most 1, not {alpha}"
+                        "an exponential moving average has a factor from 1e-6 to 1, not {alpha}"
                     )));
                 }
                 Ok(std::iter::successors(Some(*alpha), |weight| Some(weight * (1.0 - alpha))).take(frames).collect())

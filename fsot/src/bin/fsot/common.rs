@@ -85,9 +85,18 @@ impl Threads {
 }
 
 impl Report {
-    /// Prints a report to standard output: the text, or with --json the value.
-    pub(crate) fn print(&self, text: &str, json: &Value) -> Result<()> {
+    /// Prints a report, the text or with --json the value: to standard output, or to standard error if that may be one
+    /// of the `outputs`.
+    pub(crate) fn print<'a>(
+        &self,
+        outputs: impl IntoIterator<Item = &'a Path>,
+        text: &str,
+        json: &Value,
+    ) -> Result<()> {
         let text = if self.json { format!("{json:#}") } else { text.to_owned() };
+        if outputs.into_iter().any(output::is_stream) {
+            return say(text.trim_end());
+        }
         let mut stdout = std::io::stdout().lock();
         let written = writeln!(stdout, "{}", text.trim_end()).and_then(|()| stdout.flush());
         written.map_err(Error::io(STANDARD_OUTPUT))
@@ -131,15 +140,8 @@ impl Common {
 
     /// The same, if it does not depend on the problem: [`check_outputs`](Self::check_outputs) has seen it.
     pub(crate) fn named_checkpoint(&self) -> Option<PathBuf> {
-        let beside = || (!output::is_stream(&self.out)).then(|| self.sibling(".checkpoint"));
+        let beside = || (!output::is_stream(&self.out)).then(|| self.out.with_added_extension("checkpoint"));
         self.checkpoint.clone().or_else(beside)
-    }
-
-    /// OUT with something appended to its name.
-    pub(crate) fn sibling(&self, suffix: &str) -> PathBuf {
-        let mut path = self.out.clone().into_os_string();
-        path.push(suffix);
-        path.into()
     }
 
     /// Fails if one of these files, the output or the checkpoint could not be written, or is an input: call it before
@@ -164,15 +166,13 @@ impl Common {
         output::check(paths, inputs)
     }
 
-    /// Prints what was made, unless --quiet; to standard error if standard output may be the output.
-    pub(crate) fn print(&self, text: &str, json: &Value) -> Result<()> {
-        if self.quiet {
-            return Ok(());
-        }
-        if output::is_stream(&self.out) {
-            let text = if self.report.json { format!("{json:#}") } else { text.to_owned() };
-            return say(text.trim_end());
-        }
-        self.report.print(text, json)
+    /// Prints what was made, unless --quiet; `more` are the outputs beside OUT.
+    pub(crate) fn print<'a>(
+        &'a self,
+        more: impl IntoIterator<Item = &'a Path>,
+        text: &str,
+        json: &Value,
+    ) -> Result<()> {
+        if self.quiet { Ok(()) } else { self.report.print(more.into_iter().chain([&*self.out]), text, json) }
     }
 }

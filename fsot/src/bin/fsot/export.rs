@@ -20,7 +20,7 @@ pub(crate) struct Args {
     /// The file to write; an older one is replaced
     #[arg(long, short, value_name = "FILE")]
     out: PathBuf,
-    /// The name of the C array and its macros [default: the tile's file name]
+    /// The name of the C array and its macros, also named in Rust's comment [default: the tile's file name]
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
 }
@@ -58,6 +58,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let file = TileFile::read(&args.tile)?;
     let view = file.view();
     let stem = || args.tile.file_stem().map_or_else(|| "tile".into(), |stem| stem.to_string_lossy().into_owned());
+    if args.name.is_some() && !matches!(args.format, Format::CHeader | Format::Rust) {
+        return Err(Error::input("--name is for the arrays of --format c-header and rust: leave it out"));
+    }
     let name = args.name.clone().unwrap_or_else(stem);
     if name.is_empty() {
         return Err(Error::input("--name is empty: give a name of letters, digits and _"));

@@ -6,7 +6,7 @@ use fsot::checkpoint::digest;
 use fsot::counted::counted;
 use fsot::error::Result;
 use fsot::export::nft::TileFile;
-use fsot::export::sidecar::{Row, Sidecar};
+use fsot::export::sidecar::{self, Row, Sidecar};
 use fsot::tile::{TileProblem, presets};
 use noisefloor::tile::Shape;
 use serde_json::{Value, json};
@@ -26,7 +26,7 @@ pub(crate) struct Args {
 /// Reads and prints.
 pub(crate) fn run(args: &Args) -> Result<()> {
     let (text, json) = args.tile.as_deref().map_or_else(list, tell)?;
-    args.report.print(&text, &json)
+    args.report.print([], &text, &json)
 }
 
 fn list() -> Result<(String, Value)> {
@@ -53,7 +53,7 @@ fn tell(tile: &Path) -> Result<(String, Value)> {
     let file = TileFile::read(tile)?;
     let mut sidecar = Sidecar::read(tile)?;
     if sidecar.as_ref().is_some_and(|sidecar| !sidecar.describes(file.bytes())) {
-        say(&format!("warning: {} describes another tile: its sha256 differs", Sidecar::path(tile).display()))?;
+        say(&format!("warning: {} describes another tile: its sha256 differs", sidecar::path(tile).display()))?;
         sidecar = None;
     }
     let header = file.header();

@@ -24,10 +24,10 @@ pub(crate) struct Args {
     #[arg(required_unless_present = "scenes", value_name = "FILE")]
     files: Vec<PathBuf>,
     /// Judge samplers (tables .bin, tiles .nft, files of points) in this folder's tables of rendered scenes
-    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["prefix", "size", "quick"])]
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["prefix", "size", "quick", "integrands", "ema"])]
     scenes: Option<PathBuf>,
     /// Print the error against the number of points taken from the start, averaged over the files
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["quick", "ema"])]
     prefix: bool,
     /// With --prefix: draw the errors, as SVG if the name ends so, else as PNG
     #[arg(long, value_name = "FILE", requires = "prefix")]
@@ -44,8 +44,8 @@ pub(crate) struct Args {
     quick: bool,
     #[command(flatten)]
     tile: Tile,
-    /// Weight of the newest frame in a moving average over the frames of a tile; may be repeated
-    #[arg(long, value_name = "ALPHA", default_values_t = [0.1, 0.2], allow_negative_numbers = true)]
+    /// Weight of the newest frame in a moving average over the frames of a tile; may be repeated [default: 0.1 and 0.2]
+    #[arg(long, value_name = "ALPHA", allow_negative_numbers = true)]
     ema: Vec<f64>,
     #[command(flatten)]
     report: Report,
@@ -141,14 +141,17 @@ pub(crate) fn in_file(path: &Path) -> impl Fn(Error) -> Error + '_ {
 pub(crate) fn run(args: &Args) -> Result<()> {
     if let Some(folder) = &args.scenes {
         let (text, json) = args.threads.install(|| scenes::run(folder, &args.files))??;
-        return args.report.print(&text, &json);
+        return args.report.print([], &text, &json);
     }
     args.plot.iter().try_for_each(|path| names::picture(path, &["png", "svg"]))?;
     output::check(args.plot.as_deref(), args.files.iter().map(PathBuf::as_path))?;
     let contents: Vec<Content> = args.files.iter().map(|path| args.tile.read(path)).collect::<Result<_>>()?;
+    if !args.ema.is_empty() && !contents.iter().any(|content| matches!(content, Content::Tile(_))) {
+        return Err(Error::input("--ema is for tiles, and there is none: leave it out"));
+    }
     let (text, json) =
         args.threads.install(|| if args.prefix { prefix(args, &contents) } else { all(args, &contents) })??;
-    args.report.print(&text, &json)
+    args.report.print(args.plot.as_deref(), &text, &json)
 }
 
 fn all(args: &Args, contents: &[Content]) -> Result<(String, Value)> {
@@ -188,7 +191,10 @@ fn points(args: &Args, path: &Path, table: &Table, text: &mut String) -> Result<
 }
 
 fn tile(args: &Args, path: &Path, samples: &Samples, text: &mut String) -> Result<Value> {
-    let options = TileOptions { integrands: args.integrands as usize, alphas: args.ema.clone() };
+    let mut options = TileOptions { integrands: args.integrands as usize, ..TileOptions::default() };
+    if !args.ema.is_empty() {
+        options.alphas.clone_from(&args.ema);
+    }
     let report = metrics::measure_tile(&samples.view()?, &options)?;
     let _ = writeln!(text, "{}\n{report}", path.display());
     Ok(json!({ "file": path.to_string_lossy(), "tile": report }))

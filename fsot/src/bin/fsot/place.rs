@@ -7,7 +7,7 @@ use fsot::checkpoint::digest;
 use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::optimize::Optimizer;
-use fsot::output::Outputs;
+use fsot::output::{self, Outputs};
 use fsot::place::{Object, Options, Placement, colour_of, drawing};
 use fsot::read;
 use serde_json::json;
@@ -82,7 +82,7 @@ fn make(args: &Args) -> Result<()> {
         "objects": points, "colors": colours, "sizes": args.sizes, "classes": classes, "run": run.json(),
     });
     finish(outputs, [run])?;
-    args.common.print(&text, &json)
+    args.common.print(args.pictures.paths(), &text, &json)
 }
 
 /// The file format of a table of objects.
@@ -97,8 +97,8 @@ enum Format {
 impl Format {
     fn of(path: &Path) -> Result<Format> {
         match read::ending(path).as_str() {
-            "csv" => Ok(Format::Csv),
             "json" => Ok(Format::Json),
+            ending if ending == "csv" || output::is_stream(path) => Ok(Format::Csv),
             _ => Err(Error::Input(format!("{} is no name for a table: end it in .csv or .json", path.display()))),
         }
     }

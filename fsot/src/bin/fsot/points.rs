@@ -49,7 +49,7 @@ pub(crate) struct Args {
     #[arg(value_parser = clap::value_parser!(u8).range(1..=8))]
     d: u8,
     /// Opposite faces of the cube are one: for points that will be repeated like a tile, or shifted
-    #[arg(long)]
+    #[arg(long, conflicts_with = "density")]
     toroidal: bool,
     /// The probability of a projection along an axis: helps integrands that vary along axes (.3 is a good value)
     #[arg(long, value_name = "PROBABILITY", default_value_t = 0.0, allow_negative_numbers = true)]
@@ -96,7 +96,7 @@ fn make(args: &Args) -> Result<()> {
     args.pictures.add(&mut outputs, PICTURE, || draw(&table, extent))?;
     let report = if args.common.quiet { None } else { Some(report::report(&args.common.out, &table, &classes, &run)?) };
     finish(outputs, [run])?;
-    report.map_or(Ok(()), |(text, json)| args.common.print(&text, &json))
+    report.map_or(Ok(()), |(text, json)| args.common.print(args.pictures.paths(), &text, &json))
 }
 
 /// The problem, all that its result depends on, and the extent of the drawing.
@@ -121,6 +121,9 @@ fn problem(args: &Args) -> Result<(Problem, Value, [f32; 2])> {
             let folder = path.parent().unwrap_or(Path::new(""));
             let mut shape: Option<[f32; 2]> = None;
             let classes = class::ClassFile::parse(path, &text)?.classes(dims, |image| {
+                if args.density.is_some() {
+                    return Err(Error::Input(format!("{name} has densities of its own: leave out --density")));
+                }
                 let image = folder.join(image);
                 args.common.check_outputs(args.pictures.paths(), [image.as_path()])?;
                 let target = density(&image, dims, points, false, &mut files)?;

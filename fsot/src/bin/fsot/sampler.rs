@@ -5,6 +5,7 @@ use crate::drive::{drive, finish};
 use crate::names;
 use fsot::Error;
 use fsot::error::Result;
+use fsot::export::sidecar;
 use fsot::output::{self, Outputs};
 use fsot::sampler::problem::{OCTAVES, iterations};
 use fsot::sampler::sidecar::SamplerOctave;
@@ -44,8 +45,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 fn make(args: &Args) -> Result<()> {
     let out = &args.common.out;
     names::sampler(out)?;
-    let beside = (!output::is_stream(out)).then(|| SamplerSidecar::path(out));
+    let beside = (!output::is_stream(out)).then(|| sidecar::path(out));
     args.common.check_outputs(beside.as_deref(), [])?;
+    beside.iter().try_for_each(|path| sidecar::check::<SamplerSidecar>(path))?;
     let problem = problem(args)?;
     let mut optimizer = SamplerOptimizer::new(problem.clone())?;
     let run = drive(&mut optimizer, &description(&problem), &args.common)?;
@@ -54,7 +56,7 @@ fn make(args: &Args) -> Result<()> {
     outputs.add(out, &table.bytes())?;
     if let Some(path) = &beside {
         let sidecar = SamplerSidecar::new(command(args, &problem), &problem, &table, &report);
-        outputs.add(path, &sidecar.encode()?)?;
+        outputs.add(path, &sidecar::encode(&sidecar)?)?;
     }
     let octaves = SamplerOctave::all(&report);
     let mut text = format!("{}\n", out.display());
@@ -65,7 +67,7 @@ fn make(args: &Args) -> Result<()> {
     }
     let json = json!({ "out": out.to_string_lossy(), "run": run.json(), "octaves": octaves });
     finish(outputs, [run])?;
-    args.common.print(&text, &json)
+    args.common.print([], &text, &json)
 }
 
 fn problem(args: &Args) -> Result<SamplerProblem> {

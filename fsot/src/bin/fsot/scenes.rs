@@ -154,7 +154,8 @@ fn describe(scenes: &[String], judged: &[Judged]) -> (String, Value) {
             let most = ratios.len();
             let name = &sampler.name;
             let what = format!("{ratio:.3} +- {half:.3} of {}'s at {count}", owen.name);
-            writeln!(text, "{name:<22} raw, worst of 1 to {most} samples: {what}").unwrap_or(());
+            let note = "an interval for that number alone; as the largest of many, it tends to be too large";
+            writeln!(text, "{name:<22} raw, worst of 1 to {most} samples: {what} ({note})").unwrap_or(());
         }
     }
     let one = |sampler: &Judged| {

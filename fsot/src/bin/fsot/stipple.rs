@@ -76,5 +76,5 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
         "run": run.json(),
     });
     finish(outputs, [run])?;
-    args.common.print(&text, &json)
+    args.common.print(args.copies.paths(), &text, &json)
 }

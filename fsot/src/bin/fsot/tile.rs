@@ -6,7 +6,7 @@ use crate::names;
 use fsot::checkpoint::digest;
 use fsot::error::{Error, Result};
 use fsot::export::nft::{self, TileFile};
-use fsot::export::sidecar::{Quality, Sidecar};
+use fsot::export::sidecar::{self, Quality, Sidecar};
 use fsot::metrics::{TileOptions, TileReport, TileView, measure_tile};
 use fsot::output::{self, Outputs};
 use fsot::tile::{self, ClassShare, Kernel, TemporalKernel, TileOptimizer, TileProblem, presets};
@@ -51,7 +51,8 @@ pub(crate) struct Args {
     /// The first 1, 2, 4, ... samples of all pixels are tiles too
     #[arg(long)]
     progressive: bool,
-    /// The share of the slices that look at what a pixel is reconstructed from [default: tuned]
+    /// The share of the slices that look at what a pixel is reconstructed from; at most .5 with --temporal [default:
+    /// tuned]
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     box_share: Option<f32>,
     /// How much these slices count [default: tuned]
@@ -83,8 +84,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 
 fn make(args: &Args) -> Result<()> {
     let out = &args.common.out;
-    let sidecar = (!output::is_stream(out)).then(|| Sidecar::path(out));
+    let sidecar = (!output::is_stream(out)).then(|| sidecar::path(out));
     args.common.check_outputs(sidecar.as_deref(), [])?;
+    sidecar.iter().try_for_each(|path| sidecar::check::<Sidecar>(path))?;
     names::tile(out)?;
     let problem = problem(args)?;
     let shape = shape(&problem, args.bits);
@@ -110,11 +112,11 @@ fn make(args: &Args) -> Result<()> {
             sha256: digest(file.bytes()),
             quality: Quality::new(&report),
         };
-        outputs.add(path, &sidecar.encode()?)?;
+        outputs.add(path, &sidecar::encode(&sidecar)?)?;
     }
     let (text, json) = describe(out, &report, &run);
     finish(outputs, [run])?;
-    args.common.print(&text, &json)
+    args.common.print([], &text, &json)
 }
 
 fn problem(args: &Args) -> Result<TileProblem> {
@@ -134,6 +136,12 @@ fn problem(args: &Args) -> Result<TileProblem> {
     let ClassShare { share, weight } = problem.box_class;
     problem.box_class =
         ClassShare { share: args.box_share.unwrap_or(share), weight: args.box_weight.unwrap_or(weight) };
+    if problem.box_class.share == 0.0 && (args.reconstruction.is_some() || args.box_weight.is_some()) {
+        return Err(Error::input(
+            "--reconstruction and --box-weight are for the slices that --box-share counts, and there are none: give \
+             --box-share, too",
+        ));
+    }
     problem.seed = args.common.given_seed().unwrap_or(problem.seed);
     problem.iterations = args.common.given_effort().map_or(problem.iterations, tile::iterations);
     problem.validate()?;

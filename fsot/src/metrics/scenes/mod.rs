@@ -24,6 +24,8 @@ const FILTERS: [f64; 3] = [2.1, 1.0, 0.0];
 const MOST: usize = 1024;
 /// The most that a value may be: sums of such are finite.
 const BRIGHTEST: f32 = 1e30;
+/// A pixel's relative variance that rounding alone makes, and more.
+const FLAT: f64 = 1e-12;
 
 /// Pixels' integrands.
 pub struct SceneTable {
@@ -105,7 +107,7 @@ impl SceneTable {
     /// Reads a file of `embree_tables`.
     ///
     /// # Errors
-    /// It cannot be read, or is none; a value is no number, or beyond what averages can hold.
+    /// It cannot be read, or is none; a value is no number, or beyond what averages can hold; no pixel's values differ.
     pub fn read(path: &Path) -> Result<SceneTable> {
         const NONE: &str = "no table of a scene, or not a whole one";
         let refuse = |why: &str| Err(Error::Input(format!("{} is {why}", path.display())));
@@ -124,7 +126,15 @@ impl SceneTable {
                 values[index]
             )));
         }
-        Ok(SceneTable::new([width, height], cells, values))
+        let table = SceneTable::new([width, height], cells, values);
+        let white = table.white(&table.scale());
+        if !(white.is_finite() && white > FLAT * table.moments.len() as f64) {
+            return Err(Error::Input(format!(
+                "{} has one value in each of its pixels, or 0 in the mean: no sampler has an error there; leave it out",
+                path.display()
+            )));
+        }
+        Ok(table)
     }
 
     fn new([width, height]: [usize; 2], cells: usize, values: Vec<f32>) -> SceneTable {
@@ -198,7 +208,7 @@ impl SceneTable {
     #[must_use]
     pub fn raw(&self, plane: &Plane) -> Vec<[f64; PLACES]> {
         let scale = self.scale();
-        let white: f64 = self.moments.iter().zip(&scale).map(|((_, variance), scale)| variance * scale).sum();
+        let white = self.white(&scale);
         let place = |place| {
             let mut sums = vec![0.0; plane.samples];
             for pixel in 0..self.width * self.height {
@@ -236,6 +246,11 @@ impl SceneTable {
     fn scale(&self) -> Vec<f64> {
         let average = self.moments.iter().map(|(mean, _)| mean).sum::<f64>() / self.moments.len() as f64;
         self.moments.iter().map(|(mean, _)| 1.0 / (mean * mean + 0.01 * average * average)).collect()
+    }
+
+    /// The energy of one independent sample, not filtered.
+    fn white(&self, scale: &[f64]) -> f64 {
+        self.moments.iter().zip(scale).map(|((_, variance), scale)| variance * scale).sum()
     }
 
     fn error(&self, pixel: usize, estimate: f64, scale: &[f64]) -> f64 {

@@ -4,7 +4,7 @@ use crate::common::Common;
 use crate::names;
 use fsot::error::{Error, Result};
 use fsot::export::points::{Format, Table, encode};
-use fsot::output::Outputs;
+use fsot::output::{self, Outputs};
 use fsot::picture::{Drawing, png, svg};
 use fsot::read;
 use fsot::stipple::{Options, Tone};
@@ -32,6 +32,7 @@ pub(crate) struct Args {
     tone: ToneArgument,
     /// The part of what cyan, magenta and yellow have in common that black replaces, 0 to 1
     #[arg(long, value_name = "PART", default_value_t = 1.0, value_parser = part, allow_negative_numbers = true)]
+    #[arg(requires = "cmyk")]
     black: f32,
     /// Draw an animation: the pictures of its frames, in the order of their names ('frames/*.png')
     #[arg(long, value_name = "GLOB", requires_all = ["window", "step"])]
@@ -151,8 +152,8 @@ pub(super) enum Picture {
 impl Picture {
     pub(super) fn of(path: &Path) -> Result<Picture> {
         match read::ending(path).as_str() {
-            "png" => Ok(Picture::Png),
             "svg" => Ok(Picture::Svg),
+            ending if ending == "png" || output::is_stream(path) => Ok(Picture::Png),
             _ => Err(Error::Input(format!("{} is no name for a drawing: end it in .png or .svg", path.display()))),
         }
     }

@@ -17,6 +17,10 @@ use std::path::{Path, PathBuf};
 /// Writes a drawing of all points to --out, and one per frame to OUT-0000.png, OUT-0001.png and so on.
 pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     let format = Picture::of(&args.common.out)?;
+    if args.common.out.extension().is_none() {
+        let out = args.common.out.display();
+        return Err(Error::Input(format!("{out}: every frame is a file, too: give a name that ends in .png or .svg")));
+    }
     let pictures = matches(pattern)?;
     let count = |value: Option<u32>| value.unwrap_or(0) as usize;
     let windows =
@@ -87,7 +91,7 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
         "run": run.json(),
     });
     finish(outputs, [run])?;
-    args.common.print(&text, &json)
+    args.common.print(args.copies.paths(), &text, &json)
 }
 
 /// The files that a pattern matches, by name.
