@@ -29,6 +29,6 @@ pub(crate) unsafe fn fill<'a, T: 'a, S: PixelSampler>(
         }
         // SAFETY: the caller passes room for `len` numbers, which are no fewer.
         let u = unsafe { convert::outputs(u, needed) }?;
-        sampler::fill(domains, width, height, samples, u).map_err(status_of)
+        Ok(sampler::fill(domains, width, height, samples, u)?)
     })())
 }

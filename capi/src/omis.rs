@@ -98,7 +98,7 @@ pub unsafe extern "C" fn nf_omis_add(
         // SAFETY: as above.
         let (pdf, value) =
             unsafe { (convert::slice(pdf, omis.techniques())?, convert::slice(value, omis.integrals())?) };
-        omis.add(technique as usize, pdf, value).map_err(status_of)
+        Ok(omis.add(technique as usize, pdf, value)?)
     })())
 }
 
@@ -133,9 +133,9 @@ pub unsafe extern "C" fn nf_omis_solve(
         let solver = solver_of(solver, ridge)?;
         // Both refuse the same.
         if let Some(alpha) = alpha {
-            omis.alpha(solver, alpha).map_err(status_of)?;
+            omis.alpha(solver, alpha)?;
         }
-        estimate.map_or(Ok(()), |estimate| omis.solve(solver, estimate).map_err(status_of))
+        Ok(estimate.map_or(Ok(()), |estimate| omis.solve(solver, estimate))?)
     })())
 }
 
@@ -151,8 +151,8 @@ pub unsafe extern "C" fn nf_omis_next_batch(omis: *mut nf_omis, solver: u32, rid
         // SAFETY: the caller passes an object that no one else uses meanwhile.
         let mut omis = unsafe { open_mut(omis) }?;
         check_beta(beta)?;
-        omis.next_batch(solver_of(solver, ridge)?).map_err(status_of)?;
-        omis.decay(beta).map_err(status_of)
+        omis.next_batch(solver_of(solver, ridge)?)?;
+        Ok(omis.decay(beta)?)
     })())
 }
 
@@ -168,7 +168,7 @@ pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis
         }
         // SAFETY: the caller passes two objects that no one else uses meanwhile; they are two, as just checked.
         let (mut omis, other) = unsafe { (open_mut(omis)?, open(other)?) };
-        omis.merge(&other).map_err(status_of)
+        Ok(omis.merge(&other)?)
     })())
 }
 
@@ -208,8 +208,8 @@ pub unsafe extern "C" fn nf_omis_weights(
             (convert::slice(pdf, pdfs)?, convert::slice(technique, samples)?, convert::outputs(weight, samples)?)
         };
         let solver = solver_of(solver, ridge)?;
-        let batch = Batch::new(items, techniques as usize, pdf, technique).map_err(status_of)?;
-        minibatch::weights(&batch, solver, weight).map_err(status_of)
+        let batch = Batch::new(items, techniques as usize, pdf, technique)?;
+        Ok(minibatch::weights(&batch, solver, weight)?)
     })())
 }
 
@@ -224,7 +224,7 @@ unsafe fn open<'a>(omis: *const nf_omis) -> Result<OptimalMis<&'a [f64]>, nf_sta
     let header = *unsafe { header(omis) }?;
     // SAFETY: nf_omis_init made the sums right behind the header.
     let sums = unsafe { convert::slice(omis.cast::<Header>().add(1).cast::<f64>(), sums_len(&header)) }?;
-    OptimalMis::resume(sums, used_counts(&header)?, header.integrals as usize).map_err(status_of)
+    Ok(OptimalMis::resume(sums, used_counts(&header)?, header.integrals as usize)?)
 }
 
 /// As [`open`], to write.
@@ -236,7 +236,7 @@ unsafe fn open_mut<'a>(omis: *mut nf_omis) -> Result<OptimalMis<&'a mut [f64]>, 
     let header = *unsafe { header(omis) }?;
     // SAFETY: nf_omis_init made the sums right behind the header.
     let sums = unsafe { convert::slice_mut(omis.cast::<Header>().add(1).cast::<f64>(), sums_len(&header)) }?;
-    OptimalMis::resume(sums, used_counts(&header)?, header.integrals as usize).map_err(status_of)
+    Ok(OptimalMis::resume(sums, used_counts(&header)?, header.integrals as usize)?)
 }
 
 /// # Safety
@@ -311,6 +311,6 @@ pub(crate) fn solver_of(solver: u32, ridge: f32) -> Result<Solver, Wrong> {
     let ridge = if ridge == 0.0 { DEFAULT_RIDGE } else { ridge };
     let solvers = [Solver::Ridge(ridge), Solver::Plain, Solver::Progressive, Solver::Balance];
     let solver = pick(solver, &solvers, c"solver must be one of NF_OMIS_*, 0 to 3")?;
-    solver.check().map_err(|error| Wrong(status_of(error), c"ridge must be 1e-8 to 1e8, or 0 for the default 2"))?;
+    solver.check().map_err(|error| Wrong(error.into(), c"ridge must be 1e-8 to 1e8, or 0 for the default 2"))?;
     Ok(solver)
 }

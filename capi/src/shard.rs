@@ -54,9 +54,7 @@ pub unsafe extern "C" fn nf_shards_allocate(
         unsafe {
             let shard = convert::slice(shard, shards as usize)?;
             let counts = convert::outputs(counts, shards as usize)?;
-            rng::try_with(rng, |rng| {
-                table::allocate(shared(shard), uniform_fraction, rng, batch, counts).map_err(status_of)
-            })
+            rng::try_with(rng, |rng| table::allocate(shared(shard), uniform_fraction, rng, batch, counts))
         }
     })())
 }
@@ -83,10 +81,10 @@ pub unsafe extern "C" fn nf_table_draw_shard(
         // uses, and outputs of `batch` elements.
         unsafe {
             let table = open(table)?;
-            let all = Shard::sum(shared(convert::slice(shard, shards as usize)?)).map_err(status_of)?;
+            let all = Shard::sum(shared(convert::slice(shard, shards as usize)?))?;
             let (index, weight) =
                 (convert::outputs(index, batch as usize)?, convert::optional_outputs(weight, batch as usize)?);
-            rng::try_with(rng, |rng| dispatch::table_draw_shard(&table, &all, rng, index, weight).map_err(status_of))
+            rng::try_with(rng, |rng| dispatch::table_draw_shard(&table, &all, rng, index, weight))
         }
     })())
 }

@@ -90,7 +90,7 @@ pub unsafe extern "C" fn nf_table_init(
         };
         // SAFETY: the caller passes memory that no one else uses.
         let (importance, sums, blocks) = unsafe { room(memory, bytes, items) }?;
-        let made = Table::new(importance, sums, items, values).map_err(status_of)?;
+        let made = Table::new(importance, sums, items, values)?;
         let state = made.state();
         // SAFETY: the caller passes room for a table.
         unsafe { put(table, memory, blocks, state) }
@@ -157,9 +157,7 @@ pub unsafe extern "C" fn nf_table_draw_distinct(
             )
         };
         // SAFETY: as above.
-        unsafe {
-            rng::try_with(rng, |rng| dispatch::table_draw_distinct(opened, rng, index, weight).map_err(status_of))
-        }
+        unsafe { rng::try_with(rng, |rng| dispatch::table_draw_distinct(opened, rng, index, weight)) }
         // What it changes it changes back: the struct stays as it is.
     })())
 }
@@ -183,7 +181,7 @@ pub unsafe extern "C" fn nf_table_update(
         change(table, |table| {
             let (index, importance) =
                 (convert::slice(index, batch as usize)?, convert::slice(importance, batch as usize)?);
-            dispatch::table_update(table, index, importance, momentum).map_err(status_of)
+            Ok(dispatch::table_update(table, index, importance, momentum)?)
         })
     }
 }
@@ -195,7 +193,7 @@ pub unsafe extern "C" fn nf_table_update(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_add_epsilon(table: *mut nf_table, epsilon: f32) -> nf_status {
     // SAFETY: the caller passes a table that no one else uses.
-    unsafe { change(table, |table| dispatch::table_add_epsilon(table, epsilon).map_err(status_of)) }
+    unsafe { change(table, |table| Ok(dispatch::table_add_epsilon(table, epsilon)?)) }
 }
 
 /// Adds `count` items behind the last.
@@ -206,7 +204,7 @@ pub unsafe extern "C" fn nf_table_append(table: *mut nf_table, importance: *cons
     // SAFETY: the caller passes `count` importances and a table that no one else uses.
     unsafe {
         change(table, |mut table| {
-            table.append(convert::slice(importance, count as usize)?).map_err(status_of)?;
+            table.append(convert::slice(importance, count as usize)?)?;
             Ok(table.state())
         })
     }
@@ -233,11 +231,11 @@ pub unsafe extern "C" fn nf_table_probabilities(
         if stride == 0 || bytes.is_none_or(|bytes| bytes >= isize::MAX as usize) {
             return Err(NF_ERR_RANGE);
         }
-        table.check_items(index).map_err(status_of)?;
+        table.check_items(index)?;
         let mut place = p;
         for index in index.chunks(64) {
             let mut probability = [0.0; 64];
-            table.probabilities(index, &mut probability).map_err(status_of)?;
+            table.probabilities(index, &mut probability)?;
             for &value in probability.iter().take(index.len()) {
                 // SAFETY: the caller passes room for the last of them. Those between are another's: no slice may cover
                 // them.
@@ -257,7 +255,7 @@ pub unsafe extern "C" fn nf_table_save(table: *const nf_table, saved: *mut c_voi
     status((|| {
         // SAFETY: the caller passes a table that no one writes meanwhile, and room for `len` bytes.
         let (table, saved) = unsafe { (open(table)?, convert::outputs(saved.cast::<u8>(), len)?) };
-        table.save(saved).map_err(status_of)
+        Ok(table.save(saved)?)
     })())
 }
 
@@ -276,10 +274,10 @@ pub unsafe extern "C" fn nf_table_load(
         convert::usable(table)?;
         // SAFETY: the caller passes `len` bytes.
         let saved = unsafe { convert::slice(saved.cast::<u8>(), len) }?;
-        let items = table::saved_items(saved).map_err(status_of)?;
+        let items = table::saved_items(saved)?;
         // SAFETY: the caller passes memory that no one else uses.
         let (importance, sums, blocks) = unsafe { room(memory, bytes, items) }?;
-        let state = Table::load(importance, sums, saved).map_err(status_of)?.state();
+        let state = Table::load(importance, sums, saved)?.state();
         // SAFETY: the caller passes room for a table.
         unsafe { put(table, memory, blocks, state) }
     })())
@@ -302,7 +300,7 @@ unsafe fn draw(
             (open(table)?, convert::outputs(index, batch as usize)?, convert::optional_outputs(weight, batch as usize)?)
         };
         // SAFETY: as above.
-        unsafe { rng::try_with(rng, |rng| draw(&table, rng, index, weight).map_err(status_of)) }
+        unsafe { rng::try_with(rng, |rng| draw(&table, rng, index, weight)) }
     })())
 }
 

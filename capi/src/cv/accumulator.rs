@@ -56,7 +56,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_size(config: *const nf_cv_config, wor
 }
 
 fn sizes<R: Real>(config: &Config) -> Result<[usize; 2], nf_status> {
-    let state = Accumulator::<R>::new(config).map_err(status_of)?;
+    let state = Accumulator::<R>::new(config)?;
     Ok([HEADER + state.len() * size_of::<R>(), state.workspace_len() * size_of::<R>()])
 }
 
@@ -76,10 +76,10 @@ pub unsafe extern "C" fn nf_cv_accumulator_init(
         let (config, out) = unsafe { (convert::reference(config)?, convert::room(out)?) };
         let core = core_config(config)?;
         let (state, sums) = if is_narrow(config)? {
-            let state = Accumulator::new(&core).map_err(status_of)?;
+            let state = Accumulator::new(&core)?;
             (AnyState::Single(state), state.len() * size_of::<f32>())
         } else {
-            let state = Accumulator::new(&core).map_err(status_of)?;
+            let state = Accumulator::new(&core)?;
             (AnyState::Double(state), state.len() * size_of::<f64>())
         };
         let header = Header { magic: MAGIC, state };
@@ -127,10 +127,10 @@ pub unsafe extern "C" fn nf_cv_accumulator_merge(
         let (ours, theirs) = unsafe { (open(accumulator)?, open_shared(other)?) };
         match (ours, theirs) {
             (Opened::Double(state, sums), OpenedShared::Double(other, other_sums)) => {
-                state.merge(sums, other, other_sums).map_err(status_of)
+                Ok(state.merge(sums, other, other_sums)?)
             }
             (Opened::Single(state, sums), OpenedShared::Single(other, other_sums)) => {
-                state.merge(sums, other, other_sums).map_err(status_of)
+                Ok(state.merge(sums, other, other_sums)?)
             }
             _ => Err(NF_ERR_MISMATCH),
         }
@@ -161,7 +161,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_estimate(
                     state.estimate(sums, workspace)
                 }
             };
-            out.write(c_estimate(&estimate.map_err(status_of)?));
+            out.write(c_estimate(&estimate?));
             Ok(())
         }
     })())
@@ -223,5 +223,5 @@ unsafe fn open_shared<'a>(accumulator: *const nf_cv_accumulator) -> Result<Opene
 unsafe fn add<R: Real>(state: &mut Accumulator<R>, sums: &mut [R], samples: &nf_cv_samples) -> Result<(), nf_status> {
     // SAFETY: the caller's promise.
     let samples = unsafe { samples::read_without_known(state.config(), samples, 1)? };
-    state.add(sums, samples).map_err(status_of)
+    Ok(state.add(sums, samples)?)
 }

@@ -22,7 +22,7 @@ pub unsafe extern "C" fn nf_cv_workspace_size(config: *const nf_cv_config, n: us
         // SAFETY: the caller's pointer, checked there for NULL and alignment.
         let config = unsafe { convert::reference(config) }?;
         is_narrow(config)?;
-        cv::workspace_len::<Best>(&core_config(config)?, n).map_err(status_of)
+        Ok::<_, nf_status>(cv::workspace_len::<Best>(&core_config(config)?, n)?)
     };
     len().ok().and_then(|len| len.checked_mul(size_of::<Best>())).unwrap_or(0)
 }
@@ -56,12 +56,12 @@ pub unsafe extern "C" fn nf_cv_estimate(
         // SAFETY: the caller's arrays and workspace, of the lengths the header states.
         let (samples, out, workspace) = unsafe {
             let samples = samples::read_without_known(&core, given, integrals)?;
-            let len = cv::workspace_len::<Best>(&core, given.n).map_err(status_of)?;
+            let len = cv::workspace_len::<Best>(&core, given.n)?;
             (samples, convert::rooms(out, integrals)?, convert::workspace::<Best>(workspace, bytes, len)?)
         };
         match out {
             [out] => {
-                out.write(c_estimate(&dispatch::estimate(&core, samples, workspace).map_err(status_of)?));
+                out.write(c_estimate(&dispatch::estimate(&core, samples, workspace)?));
                 Ok(())
             }
             _ => each(&core, samples, given.n, workspace, out),
@@ -86,9 +86,9 @@ fn each(
         Samples::new(u.unwrap_or_default(), f.unwrap_or_default())
     };
     // Before anything is written.
-    (0..out.len()).try_for_each(|index| integral(index).check(config)).map_err(status_of)?;
+    (0..out.len()).try_for_each(|index| integral(index).check(config))?;
     for (index, out) in out.iter_mut().enumerate() {
-        let estimate = dispatch::estimate(config, integral(index), workspace).map_err(status_of)?;
+        let estimate = dispatch::estimate(config, integral(index), workspace)?;
         out.write(c_estimate(&estimate));
     }
     Ok(())

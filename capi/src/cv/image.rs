@@ -67,7 +67,7 @@ pub unsafe extern "C" fn nf_cv_image_needed(image: *const nf_cv_image, out: *mut
     status((|| {
         // SAFETY: the caller's pointers, checked there. A copy, as `out` may be a part of the image.
         let (image, out) = unsafe { (*convert::reference(image)?, convert::room(out)?) };
-        let needed = core_image(&image, false)?.needed().map_err(status_of)?;
+        let needed = core_image(&image, false)?.needed()?;
         let [x, y, width, height] = [needed.x, needed.y, needed.width, needed.height].map(|value| value as u32);
         out.write(nf_cv_rectangle { x, y, width, height });
         Ok(())
@@ -87,7 +87,7 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
         let (config, image, samples) =
             unsafe { (convert::reference(config)?, convert::reference(image)?, convert::reference(samples)?) };
         let image = core_image(image, !samples.known.is_null())?;
-        cv::image_workspace_len(&supported(config)?, &image, samples.n).map_err(status_of)
+        Ok::<_, nf_status>(cv::image_workspace_len(&supported(config)?, &image, samples.n)?)
     };
     len().ok().and_then(|len| len.checked_mul(size_of::<f32>())).unwrap_or(0)
 }
@@ -122,7 +122,7 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
             unsafe { (convert::reference(config)?, convert::reference(image)?, convert::reference(samples)?) };
         let core = supported(config)?;
         let mut image = core_image(of, !given.known.is_null())?;
-        let [pixels, estimates] = image.counts().map_err(status_of)?;
+        let [pixels, estimates] = image.counts()?;
         let values = convert::product(pixels, core.channels)?;
         // SAFETY: the caller's arrays, of the lengths the header states.
         let (samples, out) = unsafe {
@@ -189,8 +189,8 @@ unsafe fn estimate(
             out.write(c_estimate(&estimate));
         }
     };
-    let needed = cv::image_workspace_len(config, image, n).map_err(status_of)?;
+    let needed = cv::image_workspace_len(config, image, n)?;
     // SAFETY: the caller's promise, see above.
     let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
-    dispatch::estimate_image(config, image, samples, workspace, &mut write).map_err(status_of)
+    Ok(dispatch::estimate_image(config, image, samples, workspace, &mut write)?)
 }
