@@ -6,6 +6,7 @@ use crate::rng::{self, nf_rng};
 use crate::status::*;
 use crate::wrong::{Wrong, rule};
 use core::ffi::c_void;
+use noisefloor_core::Error;
 use noisefloor_core::minibatch::table::{self, ARITY, MAX_BLOCKS, State, Table};
 
 /// The importances of the items of a data set, from which minibatches are drawn (Algorithm 3).
@@ -88,12 +89,8 @@ pub unsafe extern "C" fn nf_table_init(
             // SAFETY: the caller passes as many importances as items.
             false => Some(unsafe { convert::slice(importance, items as usize) }?),
         };
-        // SAFETY: the caller passes memory that no one else uses.
-        let (importance, sums, blocks) = unsafe { room(memory, bytes, items) }?;
-        let made = Table::new(importance, sums, items, values)?;
-        let state = made.state();
-        // SAFETY: the caller passes room for a table.
-        unsafe { put(table, memory, blocks, state) }
+        // SAFETY: the caller passes room for a table, and memory that no one else uses.
+        unsafe { create(table, memory, bytes, items, |importance, sums| Table::new(importance, sums, items, values)) }
     })())
 }
 
@@ -275,11 +272,8 @@ pub unsafe extern "C" fn nf_table_load(
         // SAFETY: the caller passes `len` bytes.
         let saved = unsafe { convert::slice(saved.cast::<u8>(), len) }?;
         let items = table::saved_items(saved)?;
-        // SAFETY: the caller passes memory that no one else uses.
-        let (importance, sums, blocks) = unsafe { room(memory, bytes, items) }?;
-        let state = Table::load(importance, sums, saved)?.state();
-        // SAFETY: the caller passes room for a table.
-        unsafe { put(table, memory, blocks, state) }
+        // SAFETY: the caller passes room for a table, and memory that no one else uses.
+        unsafe { create(table, memory, bytes, items, |importance, sums| Table::load(importance, sums, saved)) }
     })())
 }
 
@@ -291,7 +285,7 @@ unsafe fn draw(
     batch: u32,
     index: *mut u32,
     weight: *mut f32,
-    draw: impl FnOnce(&Reader<'_>, &mut rng::Rng, &mut [u32], Option<&mut [f32]>) -> Result<(), noisefloor_core::Error>,
+    draw: impl FnOnce(&Reader<'_>, &mut rng::Rng, &mut [u32], Option<&mut [f32]>) -> Result<(), Error>,
 ) -> nf_status {
     status((|| {
         // SAFETY: the caller passes a table that no one writes meanwhile, a generator that no one else uses, and
@@ -378,63 +372,45 @@ fn lengths(table: &nf_table) -> Result<(usize, usize), Wrong> {
     Ok((importance / size_of::<f32>(), sums / size_of::<i64>()))
 }
 
-/// Memory for at least `items` items, divided, and how many blocks it has room for.
+/// Makes a table in memory for at least `items` items.
 ///
 /// # Safety
-/// A non-NULL `memory` must be the start of `bytes` bytes that no one else uses during `'a`.
-unsafe fn room<'a>(
+/// `table` must be room for a table, and a non-NULL `memory` the start of `bytes` bytes that no one else uses.
+unsafe fn create(
+    table: *mut nf_table,
     memory: *mut c_void,
     bytes: usize,
     items: u32,
-) -> Result<(&'a mut [f32], &'a mut [i64], u32), nf_status> {
+    make: impl for<'a> FnOnce(&'a mut [f32], &'a mut [i64]) -> Result<Writer<'a>, Error>,
+) -> Result<(), nf_status> {
     let needed = nf_table_size(items);
     if needed == 0 {
         return Err(NF_ERR_MEMORY);
     }
     // SAFETY: passed on to the caller.
-    unsafe { convert::memory(memory, bytes, needed) }?;
+    let start = unsafe { convert::memory(memory, bytes, needed) }?;
     let fits = |blocks| parts(blocks).is_some_and(|(importance, sums)| importance + sums + SLACK <= bytes);
     // The most blocks that fit, by bisection: those of `items` do, one more than the most there can be does not.
-    let (mut fit, mut not) = (items.div_ceil(ARITY as u32), MAX_BLOCKS as u32 + 1);
-    while not - fit > 1 {
-        let middle = fit + (not - fit) / 2;
-        if fits(middle) { fit = middle } else { not = middle }
+    let (mut blocks, mut not) = (items.div_ceil(ARITY as u32), MAX_BLOCKS as u32 + 1);
+    while not - blocks > 1 {
+        let middle = blocks + (not - blocks) / 2;
+        if fits(middle) { blocks = middle } else { not = middle }
     }
-    let (importance, sums) = parts(fit).ok_or(NF_ERR_MEMORY)?;
-    let start = aligned(memory);
+    let (of_importance, of_sums) = parts(blocks).ok_or(NF_ERR_MEMORY)?;
+    // The first cache line that begins in the memory.
+    let start = start.wrapping_add(start.addr().wrapping_neg() % ALIGNMENT);
+    let (importance, sums) = (start.cast(), start.wrapping_add(of_importance).cast());
     // SAFETY: `start` is aligned for both, and at most SLACK bytes behind the start of memory that holds as much and
     // both.
-    unsafe {
-        Ok((
-            convert::outputs(start.cast(), importance / size_of::<f32>())?,
-            convert::outputs(start.add(importance).cast(), sums / size_of::<i64>())?,
-            fit,
-        ))
-    }
-}
-
-/// The first cache line that begins in the memory.
-fn aligned(memory: *mut c_void) -> *mut u8 {
-    let start = memory.cast::<u8>();
-    start.wrapping_add(start.addr().wrapping_neg() % ALIGNMENT)
-}
-
-/// Writes the struct of a table whose memory has been made.
-///
-/// # Safety
-/// `table` must be room for a table, and `memory` what [`room`] was given.
-unsafe fn put(table: *mut nf_table, memory: *mut c_void, blocks: u32, state: State) -> Result<(), nf_status> {
-    let (importance, _) = parts(blocks).ok_or(NF_ERR_MEMORY)?;
-    let start = aligned(memory);
-    let made = nf_table {
-        importance: start.cast(),
-        sums: start.wrapping_add(importance).cast(),
-        scale: state.scale,
-        items: state.items,
-        blocks,
-        uniform_fraction: state.uniform_fraction,
-        magic: MAGIC,
+    let made = unsafe {
+        make(
+            convert::outputs(importance, of_importance / size_of::<f32>())?,
+            convert::outputs(sums, of_sums / size_of::<i64>())?,
+        )
     };
+    let State { scale, items, uniform_fraction } = made?.state();
     // SAFETY: passed on to the caller.
-    unsafe { convert::write(table, made) }
+    unsafe {
+        convert::write(table, nf_table { importance, sums, scale, items, blocks, uniform_fraction, magic: MAGIC })
+    }
 }
