@@ -109,6 +109,27 @@ pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, len: usize) -> Result<&'a
     Ok(unsafe { core::slice::from_raw_parts_mut(pointer, len) })
 }
 
+/// What [`slice`] makes, or [`slice_mut`].
+pub(crate) trait Slice<T>: AsRef<[T]> + Sized {
+    /// # Safety
+    /// As for the one that makes it.
+    unsafe fn of(pointer: *mut T, len: usize) -> Result<Self, nf_status>;
+}
+
+impl<T> Slice<T> for &[T] {
+    unsafe fn of(pointer: *mut T, len: usize) -> Result<Self, nf_status> {
+        // SAFETY: passed on to the caller.
+        unsafe { slice(pointer, len) }
+    }
+}
+
+impl<T> Slice<T> for &mut [T] {
+    unsafe fn of(pointer: *mut T, len: usize) -> Result<Self, nf_status> {
+        // SAFETY: passed on to the caller.
+        unsafe { slice_mut(pointer, len) }
+    }
+}
+
 /// Numbers of which every pattern of bits is one.
 pub(crate) trait AnyBits: Copy {}
 

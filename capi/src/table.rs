@@ -1,6 +1,6 @@
 //! Tables of importances, and minibatches drawn from them.
 
-use crate::convert;
+use crate::convert::{self, Slice};
 use crate::dispatch::{self, Reader, Writer};
 use crate::rng::{self, nf_rng};
 use crate::status::*;
@@ -144,19 +144,8 @@ pub unsafe extern "C" fn nf_table_draw_distinct(
     index: *mut u32,
     weight: *mut f32,
 ) -> nf_status {
-    status((|| {
-        // SAFETY: the caller passes a table and a generator that no one else uses, and outputs of `batch` elements.
-        let (opened, index, weight) = unsafe {
-            (
-                open_mut(table)?,
-                convert::outputs(index, batch as usize)?,
-                convert::optional_outputs(weight, batch as usize)?,
-            )
-        };
-        // SAFETY: as above.
-        unsafe { rng::try_with(rng, |rng| dispatch::table_draw_distinct(opened, rng, index, weight)) }
-        // What it changes it changes back: the struct stays as it is.
-    })())
+    // SAFETY: passed on to the caller. What is changed is changed back: the struct stays as it is.
+    unsafe { draw(table, rng, batch, index, weight, dispatch::table_draw_distinct) }
 }
 
 /// Sets the importance of visited items, one after the other: q = momentum q + (1 - momentum) importance (line 13 of
@@ -221,7 +210,7 @@ pub unsafe extern "C" fn nf_table_probabilities(
 ) -> nf_status {
     status((|| {
         // SAFETY: the caller passes a table that no one writes meanwhile, and `count` items.
-        let (table, index) = unsafe { (open(table)?, convert::slice(index, count as usize)?) };
+        let (table, index): (Reader<'_>, _) = unsafe { (open(table)?, convert::slice(index, count as usize)?) };
         let Some(last) = count.checked_sub(1) else { return Ok(()) };
         convert::usable(p)?;
         let bytes = convert::product(last as usize, stride as usize)?.checked_mul(size_of::<f32>());
@@ -251,7 +240,7 @@ pub unsafe extern "C" fn nf_table_probabilities(
 pub unsafe extern "C" fn nf_table_save(table: *const nf_table, saved: *mut c_void, len: usize) -> nf_status {
     status((|| {
         // SAFETY: the caller passes a table that no one writes meanwhile, and room for `len` bytes.
-        let (table, saved) = unsafe { (open(table)?, convert::outputs(saved.cast::<u8>(), len)?) };
+        let (table, saved): (Reader<'_>, _) = unsafe { (open(table)?, convert::outputs(saved.cast::<u8>(), len)?) };
         Ok(table.save(saved)?)
     })())
 }
@@ -278,72 +267,57 @@ pub unsafe extern "C" fn nf_table_load(
 }
 
 /// # Safety
-/// As for [`nf_table_draw`].
-unsafe fn draw(
+/// As for [`nf_table_draw`], or [`nf_table_draw_distinct`].
+unsafe fn draw<I: Slice<f32>, S: Slice<i64>>(
     table: *const nf_table,
     rng: *mut nf_rng,
     batch: u32,
     index: *mut u32,
     weight: *mut f32,
-    draw: impl FnOnce(&Reader<'_>, &mut rng::Rng, &mut [u32], Option<&mut [f32]>) -> Result<(), Error>,
+    draw: impl FnOnce(Table<I, S>, &mut rng::Rng, &mut [u32], Option<&mut [f32]>) -> Result<(), Error>,
 ) -> nf_status {
     status((|| {
-        // SAFETY: the caller passes a table that no one writes meanwhile, a generator that no one else uses, and
-        // outputs of `batch` elements.
-        let (table, index, weight) = unsafe {
-            (open(table)?, convert::outputs(index, batch as usize)?, convert::optional_outputs(weight, batch as usize)?)
-        };
-        // SAFETY: as above.
-        unsafe { rng::try_with(rng, |rng| draw(&table, rng, index, weight)) }
+        // SAFETY: the caller passes a table that no one writes meanwhile, or uses where that is drawn from which writes
+        // it, a generator that no one else uses, and outputs of `batch` elements.
+        unsafe {
+            let table = open(table)?;
+            let index = convert::outputs(index, batch as usize)?;
+            let weight = convert::optional_outputs(weight, batch as usize)?;
+            rng::try_with(rng, |rng| draw(table, rng, index, weight))
+        }
     })())
 }
 
-/// The table as the core sees it, to read.
+/// The table as the core sees it, a [`Reader`] or a [`Writer`]; the struct itself is the caller's to write.
 ///
 /// # Safety
-/// A non-NULL `table` must be one that nf_table_init or nf_table_load made, whose memory no one writes during `'a`.
-pub(crate) unsafe fn open<'a>(table: *const nf_table) -> Result<Reader<'a>, nf_status> {
+/// A non-NULL `table` must be one that nf_table_init or nf_table_load made, whose memory no one writes while the result
+/// is used, nor reads if that can write it.
+pub(crate) unsafe fn open<I: Slice<f32>, S: Slice<i64>>(table: *const nf_table) -> Result<Table<I, S>, nf_status> {
     // SAFETY: passed on to the caller.
     let table = unsafe { convert::reference(table) }?;
     let (importance, sums) = lengths(table)?;
     // SAFETY: nf_table_init made both of these lengths.
-    let (importance, sums) =
-        unsafe { (convert::slice(table.importance, importance)?, convert::slice(table.sums, sums)?) };
-    Table::resume(importance, sums, state(table)).map_err(|_| NF_ERR_STATE)
-}
-
-/// As [`open`], to write the items; the struct itself is the caller's to write.
-///
-/// # Safety
-/// As for [`open`], and no one may read the memory during `'a`.
-unsafe fn open_mut<'a>(table: *mut nf_table) -> Result<Writer<'a>, nf_status> {
-    // SAFETY: passed on to the caller.
-    let table = unsafe { convert::reference(table) }?;
-    let (importance, sums) = lengths(table)?;
-    // SAFETY: nf_table_init made both of these lengths.
-    let (importance, sums) =
-        unsafe { (convert::slice_mut(table.importance, importance)?, convert::slice_mut(table.sums, sums)?) };
-    Table::resume(importance, sums, state(table)).map_err(|_| NF_ERR_STATE)
+    let (importance, sums) = unsafe { (I::of(table.importance, importance)?, S::of(table.sums, sums)?) };
+    // Adding 0 turns -0 into it.
+    let uniform_fraction = table.uniform_fraction + 0.0;
+    let state = State { scale: table.scale, items: table.items, uniform_fraction };
+    Table::resume(importance, sums, state).map_err(|_| NF_ERR_STATE)
 }
 
 /// Changes a table: `change` says how it then is.
 ///
 /// # Safety
-/// As for [`open_mut`].
+/// As for [`open`], to write.
 unsafe fn change(table: *mut nf_table, change: impl FnOnce(Writer<'_>) -> Result<State, nf_status>) -> nf_status {
     status((|| {
         // SAFETY: passed on to the caller.
-        let state = change(unsafe { open_mut(table) }?)?;
+        let state = change(unsafe { open(table) }?)?;
         // SAFETY: as above; nothing else refers to the struct any more.
         let table = unsafe { convert::reference_mut(table) }?;
         (table.scale, table.items, table.uniform_fraction) = (state.scale, state.items, state.uniform_fraction);
         Ok(())
     })())
-}
-
-fn state(table: &nf_table) -> State {
-    // Adding 0 turns -0 into it.
-    State { scale: table.scale, items: table.items, uniform_fraction: table.uniform_fraction + 0.0 }
 }
 
 const NO_TABLE: Wrong = Wrong(NF_ERR_STATE, c"all fields but uniform_fraction must be as nf_table_init() made them");
@@ -355,7 +329,7 @@ const NO_TABLE: Wrong = Wrong(NF_ERR_STATE, c"all fields but uniform_fraction mu
 pub(crate) unsafe fn check_table(table: &nf_table) -> Result<(), Wrong> {
     lengths(table)?;
     // SAFETY: passed on to the caller.
-    unsafe { open(table) }.map(|_| ()).map_err(|_| NO_TABLE)
+    unsafe { open(table) }.map(|_: Reader<'_>| ()).map_err(|_| NO_TABLE)
 }
 
 /// How many importances and sums a table's memory has.
