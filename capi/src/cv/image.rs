@@ -6,7 +6,7 @@ use crate::convert;
 use crate::dispatch;
 use crate::status::*;
 use crate::wrong::{Wrong, pick};
-use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Rectangle, Samples};
+use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Rectangle};
 
 /// The pixels of an image, or of a part of one, and what is known of them. All zero but width and height: nothing.
 /// Pixel (x, y) of frame t has the number (t height + y) width + x.
@@ -124,16 +124,22 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
         let mut image = core_image(of, !given.known.is_null())?;
         let [pixels, estimates] = image.counts()?;
         let values = convert::product(pixels, core.channels)?;
-        // SAFETY: the caller's arrays, of the lengths the header states.
-        let (samples, out) = unsafe {
+        // SAFETY: the caller's arrays and workspace, of the lengths the header states.
+        let (samples, out, workspace) = unsafe {
             image.surfaces = array(of.surfaces, pixels)?;
             image.factors = array(of.factors, values)?;
             image.known = array(given.known, convert::product(values, given.n)?)?;
             image.known_integrals = array(given.known_integrals, values)?;
-            (samples::read(&core, given, pixels)?, convert::rooms(out, estimates)?)
+            let (samples, out) = (samples::read(&core, given, pixels)?, convert::rooms(out, estimates)?);
+            let len = cv::image_workspace_len(&core, &image, given.n)?;
+            (samples, out, convert::workspace(workspace, bytes, len)?)
         };
-        // SAFETY: the caller's workspace, `bytes` long.
-        unsafe { estimate(&core, &image, samples, given.n, (workspace, bytes), out) }
+        let mut write = |pixel: usize, estimate: Estimate| {
+            if let Some(out) = out.get_mut(pixel) {
+                out.write(c_estimate(&estimate));
+            }
+        };
+        Ok(dispatch::estimate_image(&core, &image, samples, workspace, &mut write)?)
     })())
 }
 
@@ -172,25 +178,4 @@ fn core_image(image: &nf_cv_image, has_known: bool) -> Result<Image<'static>, Wr
     };
     let (given, wanted) = (rectangle(&image.given), rectangle(&image.wanted));
     Ok(Image { frames, window, stride, unordered, surfaces, known, given, wanted, ..Image::new(width, height) })
-}
-
-/// # Safety
-/// The workspace's pointer must be NULL or point to as many bytes as stand beside it.
-unsafe fn estimate(
-    config: &Config,
-    image: &Image<'_>,
-    samples: Samples<'_>,
-    n: usize,
-    (workspace, bytes): (*mut core::ffi::c_void, usize),
-    out: &mut [convert::Room<nf_estimate>],
-) -> Result<(), nf_status> {
-    let mut write = |pixel: usize, estimate: Estimate| {
-        if let Some(out) = out.get_mut(pixel) {
-            out.write(c_estimate(&estimate));
-        }
-    };
-    let needed = cv::image_workspace_len(config, image, n)?;
-    // SAFETY: the caller's promise, see above.
-    let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
-    Ok(dispatch::estimate_image(config, image, samples, workspace, &mut write)?)
 }
