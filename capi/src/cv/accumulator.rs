@@ -204,6 +204,6 @@ unsafe fn open_shared<'a>(accumulator: *const nf_cv_accumulator) -> Result<Opene
 /// As for [`samples::read`].
 unsafe fn add<R: Real>(state: &mut Accumulator<R>, sums: &mut [R], samples: &nf_cv_samples) -> Result<(), nf_status> {
     // SAFETY: the caller's promise.
-    let samples = unsafe { samples::read_without_known(state.config(), samples, 1)? };
+    let samples = unsafe { samples::read(state.config(), samples, 1, false)? };
     Ok(state.add(sums, samples)?)
 }

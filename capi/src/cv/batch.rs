@@ -55,7 +55,7 @@ pub unsafe extern "C" fn nf_cv_estimate(
         }
         // SAFETY: the caller's arrays and workspace, of the lengths the header states.
         let (samples, out, workspace) = unsafe {
-            let samples = samples::read_without_known(&core, given, integrals)?;
+            let samples = samples::read(&core, given, integrals, false)?;
             let len = cv::workspace_len::<Best>(&core, given.n)?;
             (samples, convert::rooms(out, integrals)?, convert::workspace::<Best>(workspace, bytes, len)?)
         };

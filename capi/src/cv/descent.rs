@@ -62,7 +62,7 @@ pub unsafe extern "C" fn nf_cv_gradient_descent(
         let columns = core.terms()? - 1;
         // SAFETY: the caller's arrays and workspace, of the lengths the header states.
         let (samples, coefficients, workspace) = unsafe {
-            let samples = samples::read_without_known(&core, given, 1)?;
+            let samples = samples::read(&core, given, 1, false)?;
             let coefficients = convert::slice_mut(coefficients, convert::product(core.regressed(), columns)?)?;
             let len = cv::workspace_len::<Best>(&core, given.n)?;
             (samples, coefficients, convert::workspace::<Best>(workspace, bytes, len)?)

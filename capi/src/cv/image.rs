@@ -130,7 +130,7 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
             image.factors = array(of.factors, values)?;
             image.known = array(given.known, convert::product(values, given.n)?)?;
             image.known_integrals = array(given.known_integrals, values)?;
-            let (samples, out) = (samples::read(&core, given, pixels)?, convert::rooms(out, estimates)?);
+            let (samples, out) = (samples::read(&core, given, pixels, true)?, convert::rooms(out, estimates)?);
             let len = cv::image_workspace_len(&core, &image, given.n)?;
             (samples, out, convert::workspace(workspace, bytes, len)?)
         };
