@@ -14,7 +14,6 @@ use core::mem::MaybeUninit;
 pub(crate) type Room<T> = MaybeUninit<T>;
 
 /// Whether an object can be there, for all that its address says.
-#[inline(always)]
 pub(crate) fn usable<T>(pointer: *const T) -> Result<(), nf_status> {
     if pointer.is_null() {
         return Err(NF_ERR_NULL);

@@ -8,7 +8,6 @@ use noisefloor_core::sampler::{self, PixelSampler};
 ///
 /// # Safety
 /// Samplers and dims must be NULL or point to `domains` of them, `u` to `len` numbers.
-#[inline(always)]
 pub(crate) unsafe fn fill<'a, T: 'a, S: PixelSampler>(
     (samplers, dims, domains): (*const T, *const u32, usize),
     sizes: [u32; 3],
