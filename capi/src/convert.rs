@@ -14,7 +14,6 @@ use core::mem::MaybeUninit;
 pub(crate) type Room<T> = MaybeUninit<T>;
 
 /// Whether an object can be there, for all that its address says.
-#[inline(always)]
 pub(crate) fn usable<T>(pointer: *const T) -> Result<(), nf_status> {
     if pointer.is_null() {
         return Err(NF_ERR_NULL);
@@ -107,6 +106,27 @@ pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, len: usize) -> Result<&'a
     check(pointer, len)?;
     // SAFETY: not NULL, aligned and of a representable length as just checked; the rest is the caller's promise.
     Ok(unsafe { core::slice::from_raw_parts_mut(pointer, len) })
+}
+
+/// What [`slice`] makes, or [`slice_mut`].
+pub(crate) trait Slice<T>: AsRef<[T]> + Sized {
+    /// # Safety
+    /// As for the one that makes it.
+    unsafe fn of(pointer: *mut T, len: usize) -> Result<Self, nf_status>;
+}
+
+impl<T> Slice<T> for &[T] {
+    unsafe fn of(pointer: *mut T, len: usize) -> Result<Self, nf_status> {
+        // SAFETY: passed on to the caller.
+        unsafe { slice(pointer, len) }
+    }
+}
+
+impl<T> Slice<T> for &mut [T] {
+    unsafe fn of(pointer: *mut T, len: usize) -> Result<Self, nf_status> {
+        // SAFETY: passed on to the caller.
+        unsafe { slice_mut(pointer, len) }
+    }
 }
 
 /// Numbers of which every pattern of bits is one.

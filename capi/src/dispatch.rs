@@ -26,6 +26,9 @@ use crate::avx2::Avx2;
 pub(crate) type Reader<'a> = Table<&'a [f32], &'a [i64]>;
 pub(crate) type Writer<'a, K = Portable> = Table<&'a mut [f32], &'a mut [i64], K>;
 
+type Weights<'a> = Option<&'a mut [f32]>;
+type Done = Result<(), Error>;
+
 /// Functions of two bodies: one compiled for every processor of the target, and one for those that have the vector
 /// units named, which run that.
 macro_rules! by_processor {
@@ -66,52 +69,37 @@ by_processor! {
         samples: Samples<'_>,
         workspace: &mut [f32],
         out: &mut dyn FnMut(usize, Estimate),
-    ) -> Result<(), Error> {
+    ) -> Done {
         "avx2" => cv::estimate_image_by::<Avx2>(config, image, samples, workspace, out),
         _ => cv::estimate_image(config, image, samples, workspace, out),
     }
 
     /// [`Reader::draw`].
-    fn table_draw(
-        table: &Reader<'_>,
-        rng: &mut Rng,
-        index: &mut [u32],
-        weight: Option<&mut [f32]>,
-    ) -> Result<(), Error> {
-        "avx2,popcnt" => table.clone().with_kernel::<Avx2>().draw(rng, index, weight),
+    fn table_draw(table: Reader<'_>, rng: &mut Rng, index: &mut [u32], weight: Weights<'_>) -> Done {
+        "avx2,popcnt" => table.with_kernel::<Avx2>().draw(rng, index, weight),
         _ => table.draw(rng, index, weight),
     }
 
     /// [`Reader::draw_stratified`].
-    fn table_draw_stratified(
-        table: &Reader<'_>,
-        rng: &mut Rng,
-        index: &mut [u32],
-        weight: Option<&mut [f32]>,
-    ) -> Result<(), Error> {
-        "avx2,popcnt" => table.clone().with_kernel::<Avx2>().draw_stratified(rng, index, weight),
+    fn table_draw_stratified(table: Reader<'_>, rng: &mut Rng, index: &mut [u32], weight: Weights<'_>) -> Done {
+        "avx2,popcnt" => table.with_kernel::<Avx2>().draw_stratified(rng, index, weight),
         _ => table.draw_stratified(rng, index, weight),
     }
 
     /// [`Reader::draw_shard`].
     fn table_draw_shard(
-        table: &Reader<'_>,
+        table: Reader<'_>,
         all: &Shard,
         rng: &mut Rng,
         index: &mut [u32],
-        weight: Option<&mut [f32]>,
-    ) -> Result<(), Error> {
-        "avx2,popcnt" => table.clone().with_kernel::<Avx2>().draw_shard(all, rng, index, weight),
+        weight: Weights<'_>,
+    ) -> Done {
+        "avx2,popcnt" => table.with_kernel::<Avx2>().draw_shard(all, rng, index, weight),
         _ => table.draw_shard(all, rng, index, weight),
     }
 
     /// [`Writer::draw_distinct`].
-    fn table_draw_distinct(
-        table: Writer<'_>,
-        rng: &mut Rng,
-        index: &mut [u32],
-        weight: Option<&mut [f32]>,
-    ) -> Result<(), Error> {
+    fn table_draw_distinct(table: Writer<'_>, rng: &mut Rng, index: &mut [u32], weight: Weights<'_>) -> Done {
         "avx2,popcnt" => table.with_kernel::<Avx2>().draw_distinct(rng, index, weight),
         _ => table.with_kernel::<Portable>().draw_distinct(rng, index, weight),
     }
@@ -136,7 +124,7 @@ by_processor! {
         beta: f32,
         gradient: &[f32],
         estimate: &mut [f32],
-    ) -> Result<(), Error> {
+    ) -> Done {
         "avx2" => state.estimate(batch, solver, beta, gradient, estimate),
         _ => state.estimate(batch, solver, beta, gradient, estimate),
     }

@@ -8,7 +8,6 @@ use noisefloor_core::sampler::{self, PixelSampler};
 ///
 /// # Safety
 /// Samplers and dims must be NULL or point to `domains` of them, `u` to `len` numbers.
-#[inline(always)]
 pub(crate) unsafe fn fill<'a, T: 'a, S: PixelSampler>(
     (samplers, dims, domains): (*const T, *const u32, usize),
     sizes: [u32; 3],
@@ -29,6 +28,6 @@ pub(crate) unsafe fn fill<'a, T: 'a, S: PixelSampler>(
         }
         // SAFETY: the caller passes room for `len` numbers, which are no fewer.
         let u = unsafe { convert::outputs(u, needed) }?;
-        sampler::fill(domains, width, height, samples, u).map_err(status_of)
+        Ok(sampler::fill(domains, width, height, samples, u)?)
     })())
 }

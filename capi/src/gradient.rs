@@ -95,9 +95,9 @@ pub unsafe extern "C" fn nf_gradient_estimate(
         // SAFETY: as above, but written, and no part of another.
         let estimate = unsafe { convert::outputs(estimate, parameters) }?;
         let solver = solver_of(solver, ridge)?;
-        let batch = Batch::new(items, techniques, pdf, technique).map_err(status_of)?;
-        let mut state = Gradient::resume(averages, header.system, parameters).map_err(status_of)?;
-        dispatch::gradient(&mut state, &batch, solver, beta, gradient, estimate).map_err(status_of)?;
+        let batch = Batch::new(items, techniques, pdf, technique)?;
+        let mut state = Gradient::resume(averages, header.system, parameters)?;
+        dispatch::gradient(&mut state, &batch, solver, beta, gradient, estimate)?;
         header.system = *state.system();
         Ok(())
     })())

@@ -51,7 +51,7 @@ pub unsafe extern "C" fn nf_importance_cross_entropy(
         let (mut importance, mut loss) = (importance.into_iter().flatten(), loss.into_iter().flatten());
         let mut gradient = gradient.into_iter().flat_map(|gradient| gradient.chunks_exact_mut(classes.max(1)));
         for (logits, &label) in logits.chunks_exact(classes.max(1)).zip(label) {
-            let softmax = Softmax::new(logits, label as usize).map_err(status_of)?;
+            let softmax = Softmax::new(logits, label as usize)?;
             if let Some(out) = importance.next() {
                 *out = softmax.norm();
             }
@@ -126,7 +126,7 @@ pub unsafe extern "C" fn nf_importance_gradient(
         finite(gradient)?;
         let rows = gradient.chunks_exact(outputs.max(1));
         for (out, row) in importance.chunks_exact_mut(techniques.max(1)).zip(rows) {
-            importance::nodes(row, split, out).map_err(status_of)?;
+            importance::nodes(row, split, out)?;
         }
         Ok(())
     })())

@@ -31,7 +31,6 @@ pub(crate) const fn magic<H>(name: &str) -> u64 {
 ///
 /// # Safety
 /// A non-NULL, aligned `object` must point to at least 8 initialised bytes that no one writes meanwhile.
-#[inline(always)]
 pub(crate) unsafe fn check<H>(object: *const H, magic: u64) -> Result<(), nf_status> {
     const { assert!(align_of::<H>() >= align_of::<u64>()) };
     convert::usable(object)?;

@@ -103,7 +103,7 @@ unsafe fn with_alpha(
         // SAFETY: passed on to the caller.
         let (pdf, counts, alpha) =
             unsafe { (convert::slice(pdf, len)?, convert::slice(counts, len)?, convert::slice(alpha, len)?) };
-        let value = compute(pdf, counts, alpha).map_err(status_of)?;
+        let value = compute(pdf, counts, alpha)?;
         // SAFETY: passed on to the caller.
         unsafe { convert::write(weight, value) }
     })();

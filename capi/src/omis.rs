@@ -1,6 +1,6 @@
 //! Optimal multiple importance sampling weights, found from the samples.
 
-use crate::convert;
+use crate::convert::{self, Slice};
 use crate::magic::{self, magic};
 use crate::mis::NF_MIS_MAX_TECHNIQUES;
 use crate::status::*;
@@ -94,11 +94,11 @@ pub unsafe extern "C" fn nf_omis_add(
     status((|| {
         // SAFETY: the caller passes an object that no one else uses meanwhile, and arrays of the lengths it was made
         // for.
-        let mut omis = unsafe { open_mut(omis) }?;
+        let mut omis: OptimalMis<&mut [f64]> = unsafe { open(omis) }?;
         // SAFETY: as above.
         let (pdf, value) =
             unsafe { (convert::slice(pdf, omis.techniques())?, convert::slice(value, omis.integrals())?) };
-        omis.add(technique as usize, pdf, value).map_err(status_of)
+        Ok(omis.add(technique as usize, pdf, value)?)
     })())
 }
 
@@ -122,7 +122,7 @@ pub unsafe extern "C" fn nf_omis_solve(
 ) -> nf_status {
     status((|| {
         // SAFETY: the caller passes an object that no one writes meanwhile.
-        let omis = unsafe { open(omis) }?;
+        let omis: OptimalMis<&[f64]> = unsafe { open(omis) }?;
         if estimate.is_null() && alpha.is_null() {
             return Err(NF_ERR_NULL);
         }
@@ -133,9 +133,9 @@ pub unsafe extern "C" fn nf_omis_solve(
         let solver = solver_of(solver, ridge)?;
         // Both refuse the same.
         if let Some(alpha) = alpha {
-            omis.alpha(solver, alpha).map_err(status_of)?;
+            omis.alpha(solver, alpha)?;
         }
-        estimate.map_or(Ok(()), |estimate| omis.solve(solver, estimate).map_err(status_of))
+        Ok(estimate.map_or(Ok(()), |estimate| omis.solve(solver, estimate))?)
     })())
 }
 
@@ -149,10 +149,10 @@ pub unsafe extern "C" fn nf_omis_solve(
 pub unsafe extern "C" fn nf_omis_next_batch(omis: *mut nf_omis, solver: u32, ridge: f32, beta: f32) -> nf_status {
     status((|| {
         // SAFETY: the caller passes an object that no one else uses meanwhile.
-        let mut omis = unsafe { open_mut(omis) }?;
+        let mut omis: OptimalMis<&mut [f64]> = unsafe { open(omis) }?;
         check_beta(beta)?;
-        omis.next_batch(solver_of(solver, ridge)?).map_err(status_of)?;
-        omis.decay(beta).map_err(status_of)
+        omis.next_batch(solver_of(solver, ridge)?)?;
+        Ok(omis.decay(beta)?)
     })())
 }
 
@@ -167,8 +167,8 @@ pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis
             return Err(NF_ERR_RANGE);
         }
         // SAFETY: the caller passes two objects that no one else uses meanwhile; they are two, as just checked.
-        let (mut omis, other) = unsafe { (open_mut(omis)?, open(other)?) };
-        omis.merge(&other).map_err(status_of)
+        let (mut omis, other) = unsafe { (open::<&mut [f64]>(omis)?, open::<&[f64]>(other)?) };
+        Ok(omis.merge(&other)?)
     })())
 }
 
@@ -208,53 +208,28 @@ pub unsafe extern "C" fn nf_omis_weights(
             (convert::slice(pdf, pdfs)?, convert::slice(technique, samples)?, convert::outputs(weight, samples)?)
         };
         let solver = solver_of(solver, ridge)?;
-        let batch = Batch::new(items, techniques as usize, pdf, technique).map_err(status_of)?;
-        minibatch::weights(&batch, solver, weight).map_err(status_of)
+        let batch = Batch::new(items, techniques as usize, pdf, technique)?;
+        Ok(minibatch::weights(&batch, solver, weight)?)
     })())
 }
 
-/// The object as the core sees it, to read.
+/// The object as the core sees it.
 ///
 /// # Safety
-/// A non-NULL, aligned `omis` must point to at least 8 initialised bytes that no one writes during `'a`. If they are
-/// the magic number, an nf_omis must stand there: what nf_omis_init wrote, changed since by this library alone. So
-/// memory follows for as many sums as its header says.
-unsafe fn open<'a>(omis: *const nf_omis) -> Result<OptimalMis<&'a [f64]>, nf_status> {
-    // SAFETY: passed on to the caller.
-    let header = *unsafe { header(omis) }?;
-    // SAFETY: nf_omis_init made the sums right behind the header.
-    let sums = unsafe { convert::slice(omis.cast::<Header>().add(1).cast::<f64>(), sums_len(&header)) }?;
-    OptimalMis::resume(sums, used_counts(&header)?, header.integrals as usize).map_err(status_of)
-}
-
-/// As [`open`], to write.
-///
-/// # Safety
-/// As for [`open`], and no one else may read the object during `'a`.
-unsafe fn open_mut<'a>(omis: *mut nf_omis) -> Result<OptimalMis<&'a mut [f64]>, nf_status> {
-    // SAFETY: passed on to the caller.
-    let header = *unsafe { header(omis) }?;
-    // SAFETY: nf_omis_init made the sums right behind the header.
-    let sums = unsafe { convert::slice_mut(omis.cast::<Header>().add(1).cast::<f64>(), sums_len(&header)) }?;
-    OptimalMis::resume(sums, used_counts(&header)?, header.integrals as usize).map_err(status_of)
-}
-
-/// # Safety
-/// As for [`open`].
-unsafe fn header<'a>(omis: *const nf_omis) -> Result<&'a Header, nf_status> {
+/// A non-NULL, aligned `omis` must point to at least 8 initialised bytes that no one writes while the result is used,
+/// nor reads if that can write them. If they are the magic number, an nf_omis must stand there: what nf_omis_init
+/// wrote, changed since by this library alone. So memory follows for as many sums as its header says.
+unsafe fn open<S: Slice<f64>>(omis: *const nf_omis) -> Result<OptimalMis<S>, nf_status> {
     // SAFETY: passed on to the caller.
     unsafe { magic::check::<Header>(omis.cast(), MAGIC) }?;
     // SAFETY: passed on to the caller, who promises more where the number has been found.
-    let header = unsafe { convert::reference(omis.cast::<Header>()) }?;
-    if sums_len(header) > 0 { Ok(header) } else { Err(NF_ERR_STATE) }
-}
-
-fn sums_len(header: &Header) -> usize {
-    mis::len(header.techniques as usize, header.integrals as usize)
-}
-
-fn used_counts(header: &Header) -> Result<&[u32], nf_status> {
-    header.counts.get(..header.techniques as usize).ok_or(NF_ERR_STATE)
+    let header = *unsafe { convert::reference(omis.cast::<Header>()) }?;
+    let (techniques, integrals) = (header.techniques as usize, header.integrals as usize);
+    let len = mis::len(techniques, integrals);
+    let Some(counts) = header.counts.get(..techniques).filter(|_| len > 0) else { return Err(NF_ERR_STATE) };
+    // SAFETY: nf_omis_init made the sums right behind the header.
+    let sums = unsafe { S::of(omis.cast_mut().cast::<Header>().add(1).cast(), len) }?;
+    Ok(OptimalMis::resume(sums, counts, integrals)?)
 }
 
 /// What nf_omis_init, nf_omis_solve, nf_omis_next_batch, nf_omis_weights and nf_gradient_estimate take, for nf_check();
@@ -311,6 +286,6 @@ pub(crate) fn solver_of(solver: u32, ridge: f32) -> Result<Solver, Wrong> {
     let ridge = if ridge == 0.0 { DEFAULT_RIDGE } else { ridge };
     let solvers = [Solver::Ridge(ridge), Solver::Plain, Solver::Progressive, Solver::Balance];
     let solver = pick(solver, &solvers, c"solver must be one of NF_OMIS_*, 0 to 3")?;
-    solver.check().map_err(|error| Wrong(status_of(error), c"ridge must be 1e-8 to 1e8, or 0 for the default 2"))?;
+    solver.check().map_err(|error| Wrong(error.into(), c"ridge must be 1e-8 to 1e8, or 0 for the default 2"))?;
     Ok(solver)
 }

@@ -68,7 +68,7 @@ pub unsafe extern "C" fn nf_recommend(
         let samplings = [Sampling::Independent, Sampling::Stratified];
         let sampling = pick(sampling, &samplings, c"sampling must be one of NF_SAMPLING_*, 0 or 1")?;
         let can_share = pick(can_share, &[false, true], c"can_share must be 0 or 1")?;
-        let of = recommend(dims as usize, spp as usize, sampling, can_share, sample_cost).map_err(status_of)?;
+        let of = recommend(dims as usize, spp as usize, sampling, can_share, sample_cost)?;
         let config = nf_cv_config {
             dims: of.config.dims as u32,
             order: of.config.order as u32,

@@ -2,6 +2,7 @@
 
 use crate::convert;
 use crate::status::nf_status;
+use noisefloor_core::Error;
 pub(crate) use noisefloor_core::rng::Rng;
 
 /// A PCG32 random number generator (O'Neill 2014), for minibatches, examples and tests: the same numbers on every
@@ -46,27 +47,23 @@ pub unsafe extern "C" fn nf_rng_uniform(rng: *mut nf_rng) -> f32 {
 /// `rng` must be NULL or a generator that nothing else uses meanwhile.
 unsafe fn with<T: Default>(rng: *mut nf_rng, draw: impl FnOnce(&mut Rng) -> T) -> T {
     // SAFETY: passed on to the caller.
-    let Ok(rng) = (unsafe { convert::reference_mut(rng) }) else { return T::default() };
-    let mut generator = Rng { state: rng.state, increment: rng.increment };
-    let value = draw(&mut generator);
-    *rng = stored(generator);
-    value
+    unsafe { try_with(rng, |rng| Ok(draw(rng))) }.unwrap_or_default()
 }
 
 /// A draw that can fail, and then leaves the generator where it was.
 ///
 /// # Safety
 /// A non-NULL `rng` must be a generator that nothing else uses meanwhile.
-pub(crate) unsafe fn try_with(
+pub(crate) unsafe fn try_with<T>(
     rng: *mut nf_rng,
-    draw: impl FnOnce(&mut Rng) -> Result<(), nf_status>,
-) -> Result<(), nf_status> {
+    draw: impl FnOnce(&mut Rng) -> Result<T, Error>,
+) -> Result<T, nf_status> {
     // SAFETY: passed on to the caller.
     let rng = unsafe { convert::reference_mut(rng) }?;
     let mut generator = Rng { state: rng.state, increment: rng.increment };
-    draw(&mut generator)?;
+    let value = draw(&mut generator)?;
     *rng = stored(generator);
-    Ok(())
+    Ok(value)
 }
 
 fn stored(generator: Rng) -> nf_rng {

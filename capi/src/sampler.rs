@@ -88,7 +88,6 @@ unsafe fn others(sampler: nf_sampler, dims: u32, u: *mut f32) {
 
 /// # Safety
 /// `u` must be NULL or have room for N numbers.
-#[inline(always)]
 unsafe fn draw<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
     // SAFETY: passed on to the caller.
     if let Ok(u) = unsafe { convert::rooms(u, N) } {

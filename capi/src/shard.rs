@@ -1,7 +1,7 @@
 //! Tables of several processes, drawn as one; and shuffling.
 
 use crate::convert;
-use crate::dispatch;
+use crate::dispatch::{self, Reader};
 use crate::rng::{self, nf_rng};
 use crate::status::*;
 use crate::table::{nf_table, open};
@@ -28,7 +28,8 @@ pub unsafe extern "C" fn nf_table_shard(table: *const nf_table, out: *mut nf_sha
     status((|| {
         // SAFETY: the caller passes a table that no one writes meanwhile, and room for the result.
         unsafe {
-            let Shard { importance, items } = open(table)?.shard();
+            let table: Reader<'_> = open(table)?;
+            let Shard { importance, items } = table.shard();
             convert::write(out, nf_shard { importance, items })
         }
     })())
@@ -54,9 +55,7 @@ pub unsafe extern "C" fn nf_shards_allocate(
         unsafe {
             let shard = convert::slice(shard, shards as usize)?;
             let counts = convert::outputs(counts, shards as usize)?;
-            rng::try_with(rng, |rng| {
-                table::allocate(shared(shard), uniform_fraction, rng, batch, counts).map_err(status_of)
-            })
+            rng::try_with(rng, |rng| table::allocate(shared(shard), uniform_fraction, rng, batch, counts))
         }
     })())
 }
@@ -83,10 +82,10 @@ pub unsafe extern "C" fn nf_table_draw_shard(
         // uses, and outputs of `batch` elements.
         unsafe {
             let table = open(table)?;
-            let all = Shard::sum(shared(convert::slice(shard, shards as usize)?)).map_err(status_of)?;
+            let all = Shard::sum(shared(convert::slice(shard, shards as usize)?))?;
             let (index, weight) =
                 (convert::outputs(index, batch as usize)?, convert::optional_outputs(weight, batch as usize)?);
-            rng::try_with(rng, |rng| dispatch::table_draw_shard(&table, &all, rng, index, weight).map_err(status_of))
+            rng::try_with(rng, |rng| dispatch::table_draw_shard(table, &all, rng, index, weight))
         }
     })())
 }

@@ -81,11 +81,6 @@ const _: () = assert!(
         && Error::Corrupt.status() == NF_ERR_CORRUPT
 );
 
-/// The status that stands for a core error.
-pub(crate) fn status_of(error: Error) -> nf_status {
-    error.status()
-}
-
 /// What a C function returns for the outcome of its body.
 pub(crate) fn status(result: Result<(), nf_status>) -> nf_status {
     result.err().unwrap_or(NF_OK)

@@ -1,11 +1,12 @@
 //! Tables of importances, and minibatches drawn from them.
 
-use crate::convert;
+use crate::convert::{self, Slice};
 use crate::dispatch::{self, Reader, Writer};
 use crate::rng::{self, nf_rng};
 use crate::status::*;
 use crate::wrong::{Wrong, rule};
 use core::ffi::c_void;
+use noisefloor_core::Error;
 use noisefloor_core::minibatch::table::{self, ARITY, MAX_BLOCKS, State, Table};
 
 /// The importances of the items of a data set, from which minibatches are drawn (Algorithm 3).
@@ -88,12 +89,8 @@ pub unsafe extern "C" fn nf_table_init(
             // SAFETY: the caller passes as many importances as items.
             false => Some(unsafe { convert::slice(importance, items as usize) }?),
         };
-        // SAFETY: the caller passes memory that no one else uses.
-        let (importance, sums, blocks) = unsafe { room(memory, bytes, items) }?;
-        let made = Table::new(importance, sums, items, values).map_err(status_of)?;
-        let state = made.state();
-        // SAFETY: the caller passes room for a table.
-        unsafe { put(table, memory, blocks, state) }
+        // SAFETY: the caller passes room for a table, and memory that no one else uses.
+        unsafe { create(table, memory, bytes, items, |importance, sums| Table::new(importance, sums, items, values)) }
     })())
 }
 
@@ -147,21 +144,8 @@ pub unsafe extern "C" fn nf_table_draw_distinct(
     index: *mut u32,
     weight: *mut f32,
 ) -> nf_status {
-    status((|| {
-        // SAFETY: the caller passes a table and a generator that no one else uses, and outputs of `batch` elements.
-        let (opened, index, weight) = unsafe {
-            (
-                open_mut(table)?,
-                convert::outputs(index, batch as usize)?,
-                convert::optional_outputs(weight, batch as usize)?,
-            )
-        };
-        // SAFETY: as above.
-        unsafe {
-            rng::try_with(rng, |rng| dispatch::table_draw_distinct(opened, rng, index, weight).map_err(status_of))
-        }
-        // What it changes it changes back: the struct stays as it is.
-    })())
+    // SAFETY: passed on to the caller. What is changed is changed back: the struct stays as it is.
+    unsafe { draw(table, rng, batch, index, weight, dispatch::table_draw_distinct) }
 }
 
 /// Sets the importance of visited items, one after the other: q = momentum q + (1 - momentum) importance (line 13 of
@@ -183,7 +167,7 @@ pub unsafe extern "C" fn nf_table_update(
         change(table, |table| {
             let (index, importance) =
                 (convert::slice(index, batch as usize)?, convert::slice(importance, batch as usize)?);
-            dispatch::table_update(table, index, importance, momentum).map_err(status_of)
+            Ok(dispatch::table_update(table, index, importance, momentum)?)
         })
     }
 }
@@ -195,7 +179,7 @@ pub unsafe extern "C" fn nf_table_update(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_add_epsilon(table: *mut nf_table, epsilon: f32) -> nf_status {
     // SAFETY: the caller passes a table that no one else uses.
-    unsafe { change(table, |table| dispatch::table_add_epsilon(table, epsilon).map_err(status_of)) }
+    unsafe { change(table, |table| Ok(dispatch::table_add_epsilon(table, epsilon)?)) }
 }
 
 /// Adds `count` items behind the last.
@@ -206,7 +190,7 @@ pub unsafe extern "C" fn nf_table_append(table: *mut nf_table, importance: *cons
     // SAFETY: the caller passes `count` importances and a table that no one else uses.
     unsafe {
         change(table, |mut table| {
-            table.append(convert::slice(importance, count as usize)?).map_err(status_of)?;
+            table.append(convert::slice(importance, count as usize)?)?;
             Ok(table.state())
         })
     }
@@ -226,18 +210,18 @@ pub unsafe extern "C" fn nf_table_probabilities(
 ) -> nf_status {
     status((|| {
         // SAFETY: the caller passes a table that no one writes meanwhile, and `count` items.
-        let (table, index) = unsafe { (open(table)?, convert::slice(index, count as usize)?) };
+        let (table, index): (Reader<'_>, _) = unsafe { (open(table)?, convert::slice(index, count as usize)?) };
         let Some(last) = count.checked_sub(1) else { return Ok(()) };
         convert::usable(p)?;
         let bytes = convert::product(last as usize, stride as usize)?.checked_mul(size_of::<f32>());
         if stride == 0 || bytes.is_none_or(|bytes| bytes >= isize::MAX as usize) {
             return Err(NF_ERR_RANGE);
         }
-        table.check_items(index).map_err(status_of)?;
+        table.check_items(index)?;
         let mut place = p;
         for index in index.chunks(64) {
             let mut probability = [0.0; 64];
-            table.probabilities(index, &mut probability).map_err(status_of)?;
+            table.probabilities(index, &mut probability)?;
             for &value in probability.iter().take(index.len()) {
                 // SAFETY: the caller passes room for the last of them. Those between are another's: no slice may cover
                 // them.
@@ -256,8 +240,8 @@ pub unsafe extern "C" fn nf_table_probabilities(
 pub unsafe extern "C" fn nf_table_save(table: *const nf_table, saved: *mut c_void, len: usize) -> nf_status {
     status((|| {
         // SAFETY: the caller passes a table that no one writes meanwhile, and room for `len` bytes.
-        let (table, saved) = unsafe { (open(table)?, convert::outputs(saved.cast::<u8>(), len)?) };
-        table.save(saved).map_err(status_of)
+        let (table, saved): (Reader<'_>, _) = unsafe { (open(table)?, convert::outputs(saved.cast::<u8>(), len)?) };
+        Ok(table.save(saved)?)
     })())
 }
 
@@ -276,82 +260,64 @@ pub unsafe extern "C" fn nf_table_load(
         convert::usable(table)?;
         // SAFETY: the caller passes `len` bytes.
         let saved = unsafe { convert::slice(saved.cast::<u8>(), len) }?;
-        let items = table::saved_items(saved).map_err(status_of)?;
-        // SAFETY: the caller passes memory that no one else uses.
-        let (importance, sums, blocks) = unsafe { room(memory, bytes, items) }?;
-        let state = Table::load(importance, sums, saved).map_err(status_of)?.state();
-        // SAFETY: the caller passes room for a table.
-        unsafe { put(table, memory, blocks, state) }
+        let items = table::saved_items(saved)?;
+        // SAFETY: the caller passes room for a table, and memory that no one else uses.
+        unsafe { create(table, memory, bytes, items, |importance, sums| Table::load(importance, sums, saved)) }
     })())
 }
 
 /// # Safety
-/// As for [`nf_table_draw`].
-unsafe fn draw(
+/// As for [`nf_table_draw`], or [`nf_table_draw_distinct`].
+unsafe fn draw<I: Slice<f32>, S: Slice<i64>>(
     table: *const nf_table,
     rng: *mut nf_rng,
     batch: u32,
     index: *mut u32,
     weight: *mut f32,
-    draw: impl FnOnce(&Reader<'_>, &mut rng::Rng, &mut [u32], Option<&mut [f32]>) -> Result<(), noisefloor_core::Error>,
+    draw: impl FnOnce(Table<I, S>, &mut rng::Rng, &mut [u32], Option<&mut [f32]>) -> Result<(), Error>,
 ) -> nf_status {
     status((|| {
-        // SAFETY: the caller passes a table that no one writes meanwhile, a generator that no one else uses, and
-        // outputs of `batch` elements.
-        let (table, index, weight) = unsafe {
-            (open(table)?, convert::outputs(index, batch as usize)?, convert::optional_outputs(weight, batch as usize)?)
-        };
-        // SAFETY: as above.
-        unsafe { rng::try_with(rng, |rng| draw(&table, rng, index, weight).map_err(status_of)) }
+        // SAFETY: the caller passes a table that no one writes meanwhile, or uses where that is drawn from which writes
+        // it, a generator that no one else uses, and outputs of `batch` elements.
+        unsafe {
+            let table = open(table)?;
+            let index = convert::outputs(index, batch as usize)?;
+            let weight = convert::optional_outputs(weight, batch as usize)?;
+            rng::try_with(rng, |rng| draw(table, rng, index, weight))
+        }
     })())
 }
 
-/// The table as the core sees it, to read.
+/// The table as the core sees it, a [`Reader`] or a [`Writer`]; the struct itself is the caller's to write.
 ///
 /// # Safety
-/// A non-NULL `table` must be one that nf_table_init or nf_table_load made, whose memory no one writes during `'a`.
-pub(crate) unsafe fn open<'a>(table: *const nf_table) -> Result<Reader<'a>, nf_status> {
+/// A non-NULL `table` must be one that nf_table_init or nf_table_load made, whose memory no one writes while the result
+/// is used, nor reads if that can write it.
+pub(crate) unsafe fn open<I: Slice<f32>, S: Slice<i64>>(table: *const nf_table) -> Result<Table<I, S>, nf_status> {
     // SAFETY: passed on to the caller.
     let table = unsafe { convert::reference(table) }?;
     let (importance, sums) = lengths(table)?;
     // SAFETY: nf_table_init made both of these lengths.
-    let (importance, sums) =
-        unsafe { (convert::slice(table.importance, importance)?, convert::slice(table.sums, sums)?) };
-    Table::resume(importance, sums, state(table)).map_err(|_| NF_ERR_STATE)
-}
-
-/// As [`open`], to write the items; the struct itself is the caller's to write.
-///
-/// # Safety
-/// As for [`open`], and no one may read the memory during `'a`.
-unsafe fn open_mut<'a>(table: *mut nf_table) -> Result<Writer<'a>, nf_status> {
-    // SAFETY: passed on to the caller.
-    let table = unsafe { convert::reference(table) }?;
-    let (importance, sums) = lengths(table)?;
-    // SAFETY: nf_table_init made both of these lengths.
-    let (importance, sums) =
-        unsafe { (convert::slice_mut(table.importance, importance)?, convert::slice_mut(table.sums, sums)?) };
-    Table::resume(importance, sums, state(table)).map_err(|_| NF_ERR_STATE)
+    let (importance, sums) = unsafe { (I::of(table.importance, importance)?, S::of(table.sums, sums)?) };
+    // Adding 0 turns -0 into it.
+    let uniform_fraction = table.uniform_fraction + 0.0;
+    let state = State { scale: table.scale, items: table.items, uniform_fraction };
+    Table::resume(importance, sums, state).map_err(|_| NF_ERR_STATE)
 }
 
 /// Changes a table: `change` says how it then is.
 ///
 /// # Safety
-/// As for [`open_mut`].
+/// As for [`open`], to write.
 unsafe fn change(table: *mut nf_table, change: impl FnOnce(Writer<'_>) -> Result<State, nf_status>) -> nf_status {
     status((|| {
         // SAFETY: passed on to the caller.
-        let state = change(unsafe { open_mut(table) }?)?;
+        let state = change(unsafe { open(table) }?)?;
         // SAFETY: as above; nothing else refers to the struct any more.
         let table = unsafe { convert::reference_mut(table) }?;
         (table.scale, table.items, table.uniform_fraction) = (state.scale, state.items, state.uniform_fraction);
         Ok(())
     })())
-}
-
-fn state(table: &nf_table) -> State {
-    // Adding 0 turns -0 into it.
-    State { scale: table.scale, items: table.items, uniform_fraction: table.uniform_fraction + 0.0 }
 }
 
 const NO_TABLE: Wrong = Wrong(NF_ERR_STATE, c"all fields but uniform_fraction must be as nf_table_init() made them");
@@ -363,7 +329,7 @@ const NO_TABLE: Wrong = Wrong(NF_ERR_STATE, c"all fields but uniform_fraction mu
 pub(crate) unsafe fn check_table(table: &nf_table) -> Result<(), Wrong> {
     lengths(table)?;
     // SAFETY: passed on to the caller.
-    unsafe { open(table) }.map(|_| ()).map_err(|_| NO_TABLE)
+    unsafe { open(table) }.map(|_: Reader<'_>| ()).map_err(|_| NO_TABLE)
 }
 
 /// How many importances and sums a table's memory has.
@@ -380,63 +346,45 @@ fn lengths(table: &nf_table) -> Result<(usize, usize), Wrong> {
     Ok((importance / size_of::<f32>(), sums / size_of::<i64>()))
 }
 
-/// Memory for at least `items` items, divided, and how many blocks it has room for.
+/// Makes a table in memory for at least `items` items.
 ///
 /// # Safety
-/// A non-NULL `memory` must be the start of `bytes` bytes that no one else uses during `'a`.
-unsafe fn room<'a>(
+/// `table` must be room for a table, and a non-NULL `memory` the start of `bytes` bytes that no one else uses.
+unsafe fn create(
+    table: *mut nf_table,
     memory: *mut c_void,
     bytes: usize,
     items: u32,
-) -> Result<(&'a mut [f32], &'a mut [i64], u32), nf_status> {
+    make: impl for<'a> FnOnce(&'a mut [f32], &'a mut [i64]) -> Result<Writer<'a>, Error>,
+) -> Result<(), nf_status> {
     let needed = nf_table_size(items);
     if needed == 0 {
         return Err(NF_ERR_MEMORY);
     }
     // SAFETY: passed on to the caller.
-    unsafe { convert::memory(memory, bytes, needed) }?;
+    let start = unsafe { convert::memory(memory, bytes, needed) }?;
     let fits = |blocks| parts(blocks).is_some_and(|(importance, sums)| importance + sums + SLACK <= bytes);
     // The most blocks that fit, by bisection: those of `items` do, one more than the most there can be does not.
-    let (mut fit, mut not) = (items.div_ceil(ARITY as u32), MAX_BLOCKS as u32 + 1);
-    while not - fit > 1 {
-        let middle = fit + (not - fit) / 2;
-        if fits(middle) { fit = middle } else { not = middle }
+    let (mut blocks, mut not) = (items.div_ceil(ARITY as u32), MAX_BLOCKS as u32 + 1);
+    while not - blocks > 1 {
+        let middle = blocks + (not - blocks) / 2;
+        if fits(middle) { blocks = middle } else { not = middle }
     }
-    let (importance, sums) = parts(fit).ok_or(NF_ERR_MEMORY)?;
-    let start = aligned(memory);
+    let (of_importance, of_sums) = parts(blocks).ok_or(NF_ERR_MEMORY)?;
+    // The first cache line that begins in the memory.
+    let start = start.wrapping_add(start.addr().wrapping_neg() % ALIGNMENT);
+    let (importance, sums) = (start.cast(), start.wrapping_add(of_importance).cast());
     // SAFETY: `start` is aligned for both, and at most SLACK bytes behind the start of memory that holds as much and
     // both.
-    unsafe {
-        Ok((
-            convert::outputs(start.cast(), importance / size_of::<f32>())?,
-            convert::outputs(start.add(importance).cast(), sums / size_of::<i64>())?,
-            fit,
-        ))
-    }
-}
-
-/// The first cache line that begins in the memory.
-fn aligned(memory: *mut c_void) -> *mut u8 {
-    let start = memory.cast::<u8>();
-    start.wrapping_add(start.addr().wrapping_neg() % ALIGNMENT)
-}
-
-/// Writes the struct of a table whose memory has been made.
-///
-/// # Safety
-/// `table` must be room for a table, and `memory` what [`room`] was given.
-unsafe fn put(table: *mut nf_table, memory: *mut c_void, blocks: u32, state: State) -> Result<(), nf_status> {
-    let (importance, _) = parts(blocks).ok_or(NF_ERR_MEMORY)?;
-    let start = aligned(memory);
-    let made = nf_table {
-        importance: start.cast(),
-        sums: start.wrapping_add(importance).cast(),
-        scale: state.scale,
-        items: state.items,
-        blocks,
-        uniform_fraction: state.uniform_fraction,
-        magic: MAGIC,
+    let made = unsafe {
+        make(
+            convert::outputs(importance, of_importance / size_of::<f32>())?,
+            convert::outputs(sums, of_sums / size_of::<i64>())?,
+        )
     };
+    let State { scale, items, uniform_fraction } = made?.state();
     // SAFETY: passed on to the caller.
-    unsafe { convert::write(table, made) }
+    unsafe {
+        convert::write(table, nf_table { importance, sums, scale, items, blocks, uniform_fraction, magic: MAGIC })
+    }
 }

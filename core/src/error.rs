@@ -69,6 +69,12 @@ impl Error {
     }
 }
 
+impl From<Error> for i32 {
+    fn from(error: Error) -> i32 {
+        error.status()
+    }
+}
+
 /// Whether an argument is a number from 0 to 1.
 #[allow(dead_code, reason = "each feature uses some of it")]
 pub(crate) fn check_part(value: f32) -> Result<(), Error> {

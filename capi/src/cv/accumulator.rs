@@ -6,6 +6,7 @@ use crate::convert;
 use crate::magic::{self, magic};
 use crate::status::*;
 use core::ffi::c_void;
+use noisefloor_core::Error;
 use noisefloor_core::control_variate::{Accumulator, Config};
 use noisefloor_core::real::Real;
 
@@ -23,11 +24,14 @@ struct Header {
     state: AnyState,
 }
 
+/// What there is in one of two precisions.
 #[derive(Clone, Copy)]
-enum AnyState {
-    Double(Accumulator<f64>),
-    Single(Accumulator<f32>),
+enum Either<D, S> {
+    Double(D),
+    Single(S),
 }
+
+type AnyState = Either<Accumulator<f64>, Accumulator<f32>>;
 
 /// Whether accumulators in double precision are part of the library: if not, nothing must make the compiler think so.
 const HAS_DOUBLE: bool = cfg!(feature = "double");
@@ -41,13 +45,9 @@ const HEADER: usize = size_of::<Header>();
 /// a configuration that is NULL, out of range or not for streaming.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_size(config: *const nf_cv_config, workspace: *mut usize) -> usize {
-    let sizes = || {
-        // SAFETY: the caller's pointer, checked there for NULL and alignment.
-        let config = unsafe { convert::reference(config) }?;
-        let core = core_config(config)?;
-        if is_narrow(config)? { sizes::<f32>(&core) } else { sizes::<f64>(&core) }
-    };
-    let [all, scratch] = sizes().unwrap_or_default();
+    // SAFETY: the caller's pointer, checked there for NULL and alignment.
+    let empty = unsafe { convert::reference(config) }.and_then(empty);
+    let [all, scratch] = empty.map_or([0; 2], |(_, sizes)| sizes);
     // SAFETY: the caller passes NULL or a place for a number.
     if let Ok(workspace) = unsafe { convert::room(workspace) } {
         workspace.write(scratch);
@@ -55,9 +55,17 @@ pub unsafe extern "C" fn nf_cv_accumulator_size(config: *const nf_cv_config, wor
     all
 }
 
-fn sizes<R: Real>(config: &Config) -> Result<[usize; 2], nf_status> {
-    let state = Accumulator::<R>::new(config).map_err(status_of)?;
-    Ok([HEADER + state.len() * size_of::<R>(), state.workspace_len() * size_of::<R>()])
+/// An empty accumulator, with its bytes and those of its workspace.
+fn empty(config: &nf_cv_config) -> Result<(AnyState, [usize; 2]), nf_status> {
+    fn of<R: Real>(config: &Config) -> Result<(Accumulator<R>, [usize; 2]), Error> {
+        let state = Accumulator::new(config)?;
+        Ok((state, [HEADER + state.len() * size_of::<R>(), state.workspace_len() * size_of::<R>()]))
+    }
+    let core = core_config(config)?;
+    Ok(match is_narrow(config)? {
+        true => of(&core).map(|(state, sizes)| (Either::Single(state), sizes)),
+        false => of(&core).map(|(state, sizes)| (Either::Double(state), sizes)),
+    }?)
 }
 
 /// Makes an empty accumulator in `memory`, or empties one: `*out` is its handle, the same address.
@@ -74,17 +82,10 @@ pub unsafe extern "C" fn nf_cv_accumulator_init(
     status((|| {
         // SAFETY: the caller's pointers, each checked there.
         let (config, out) = unsafe { (convert::reference(config)?, convert::room(out)?) };
-        let core = core_config(config)?;
-        let (state, sums) = if is_narrow(config)? {
-            let state = Accumulator::new(&core).map_err(status_of)?;
-            (AnyState::Single(state), state.len() * size_of::<f32>())
-        } else {
-            let state = Accumulator::new(&core).map_err(status_of)?;
-            (AnyState::Double(state), state.len() * size_of::<f64>())
-        };
+        let (state, [size, _]) = empty(config)?;
         let header = Header { magic: MAGIC, state };
         // SAFETY: the caller passes memory of the size it says; all-zero sums are those of no samples.
-        out.write(unsafe { convert::create(memory, bytes, HEADER + sums, header) }?.cast());
+        out.write(unsafe { convert::create(memory, bytes, size, header) }?.cast());
         Ok(())
     })())
 }
@@ -103,8 +104,8 @@ pub unsafe extern "C" fn nf_cv_accumulator_add(
         unsafe {
             let samples = convert::reference(samples)?;
             match open(accumulator)? {
-                Opened::Double(state, sums) => add(state, sums, samples),
-                Opened::Single(state, sums) => add(state, sums, samples),
+                Either::Double((sums, state)) => add(state, sums, samples),
+                Either::Single((sums, state)) => add(state, sums, samples),
             }
         }
     })())
@@ -126,12 +127,8 @@ pub unsafe extern "C" fn nf_cv_accumulator_merge(
         // SAFETY: the caller's objects, checked there, and not the same one.
         let (ours, theirs) = unsafe { (open(accumulator)?, open_shared(other)?) };
         match (ours, theirs) {
-            (Opened::Double(state, sums), OpenedShared::Double(other, other_sums)) => {
-                state.merge(sums, other, other_sums).map_err(status_of)
-            }
-            (Opened::Single(state, sums), OpenedShared::Single(other, other_sums)) => {
-                state.merge(sums, other, other_sums).map_err(status_of)
-            }
+            (Either::Double((sums, state)), Either::Double((theirs, other))) => Ok(state.merge(sums, other, theirs)?),
+            (Either::Single((sums, state)), Either::Single((theirs, other))) => Ok(state.merge(sums, other, theirs)?),
             _ => Err(NF_ERR_MISMATCH),
         }
     })())
@@ -152,30 +149,21 @@ pub unsafe extern "C" fn nf_cv_accumulator_estimate(
         unsafe {
             let out = convert::room(out)?;
             let estimate = match open_shared(accumulator)? {
-                OpenedShared::Double(state, sums) => {
-                    let workspace = convert::workspace(workspace, bytes, state.workspace_len())?;
-                    state.estimate(sums, workspace)
+                Either::Double((sums, state)) => {
+                    state.estimate(sums, convert::workspace(workspace, bytes, state.workspace_len())?)
                 }
-                OpenedShared::Single(state, sums) => {
-                    let workspace = convert::workspace(workspace, bytes, state.workspace_len())?;
-                    state.estimate(sums, workspace)
+                Either::Single((sums, state)) => {
+                    state.estimate(sums, convert::workspace(workspace, bytes, state.workspace_len())?)
                 }
             };
-            out.write(c_estimate(&estimate.map_err(status_of)?));
+            out.write(c_estimate(&estimate?));
             Ok(())
         }
     })())
 }
 
-enum Opened<'a> {
-    Double(&'a mut Accumulator<f64>, &'a mut [f64]),
-    Single(&'a mut Accumulator<f32>, &'a mut [f32]),
-}
-
-enum OpenedShared<'a> {
-    Double(&'a Accumulator<f64>, &'a [f64]),
-    Single(&'a Accumulator<f32>, &'a [f32]),
-}
+type Opened<'a> = Either<(&'a mut [f64], &'a mut Accumulator<f64>), (&'a mut [f32], &'a mut Accumulator<f32>)>;
+type OpenedShared<'a> = Either<(&'a [f64], &'a Accumulator<f64>), (&'a [f32], &'a Accumulator<f32>)>;
 
 /// # Safety
 /// A non-NULL, aligned pointer must be to at least 8 initialised bytes that nobody else uses during `'a`. If they are
@@ -189,15 +177,9 @@ unsafe fn open<'a>(accumulator: *mut nf_cv_accumulator) -> Result<Opened<'a>, nf
         magic::check::<Header>(accumulator.cast(), MAGIC)?;
         let sums = accumulator.cast::<u8>().add(HEADER);
         Ok(match &mut (*accumulator.cast::<Header>()).state {
-            AnyState::Double(_) if !HAS_DOUBLE => return Err(NF_ERR_STATE),
-            AnyState::Double(state) => {
-                let sums = convert::slice_mut(sums.cast(), state.len())?;
-                Opened::Double(state, sums)
-            }
-            AnyState::Single(state) => {
-                let sums = convert::slice_mut(sums.cast(), state.len())?;
-                Opened::Single(state, sums)
-            }
+            Either::Double(_) if !HAS_DOUBLE => return Err(NF_ERR_STATE),
+            Either::Double(state) => Either::Double((convert::slice_mut(sums.cast(), state.len())?, state)),
+            Either::Single(state) => Either::Single((convert::slice_mut(sums.cast(), state.len())?, state)),
         })
     }
 }
@@ -211,9 +193,9 @@ unsafe fn open_shared<'a>(accumulator: *const nf_cv_accumulator) -> Result<Opene
         magic::check::<Header>(accumulator.cast(), MAGIC)?;
         let sums = accumulator.cast::<u8>().add(HEADER);
         Ok(match &(*accumulator.cast::<Header>()).state {
-            AnyState::Double(_) if !HAS_DOUBLE => return Err(NF_ERR_STATE),
-            AnyState::Double(state) => OpenedShared::Double(state, convert::slice(sums.cast(), state.len())?),
-            AnyState::Single(state) => OpenedShared::Single(state, convert::slice(sums.cast(), state.len())?),
+            Either::Double(_) if !HAS_DOUBLE => return Err(NF_ERR_STATE),
+            Either::Double(state) => Either::Double((convert::slice(sums.cast(), state.len())?, state)),
+            Either::Single(state) => Either::Single((convert::slice(sums.cast(), state.len())?, state)),
         })
     }
 }
@@ -222,6 +204,6 @@ unsafe fn open_shared<'a>(accumulator: *const nf_cv_accumulator) -> Result<Opene
 /// As for [`samples::read`].
 unsafe fn add<R: Real>(state: &mut Accumulator<R>, sums: &mut [R], samples: &nf_cv_samples) -> Result<(), nf_status> {
     // SAFETY: the caller's promise.
-    let samples = unsafe { samples::read_without_known(state.config(), samples, 1)? };
-    state.add(sums, samples).map_err(status_of)
+    let samples = unsafe { samples::read(state.config(), samples, 1, false)? };
+    Ok(state.add(sums, samples)?)
 }

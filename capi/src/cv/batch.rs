@@ -2,11 +2,11 @@
 
 use super::config::{c_estimate, check_core, core_config, is_narrow, nf_cv_config, nf_estimate};
 use super::samples::{self, nf_cv_samples};
-use crate::convert::{self, Room};
+use crate::convert;
 use crate::dispatch;
 use crate::status::*;
 use core::ffi::c_void;
-use noisefloor_core::control_variate::{self as cv, Config, NonFinite, Samples};
+use noisefloor_core::control_variate::{self as cv, NonFinite, Samples};
 
 /// What estimates from arrays are computed in: the best that the library was built for.
 #[cfg(feature = "double")]
@@ -22,7 +22,7 @@ pub unsafe extern "C" fn nf_cv_workspace_size(config: *const nf_cv_config, n: us
         // SAFETY: the caller's pointer, checked there for NULL and alignment.
         let config = unsafe { convert::reference(config) }?;
         is_narrow(config)?;
-        cv::workspace_len::<Best>(&core_config(config)?, n).map_err(status_of)
+        Ok::<_, nf_status>(cv::workspace_len::<Best>(&core_config(config)?, n)?)
     };
     len().ok().and_then(|len| len.checked_mul(size_of::<Best>())).unwrap_or(0)
 }
@@ -55,41 +55,27 @@ pub unsafe extern "C" fn nf_cv_estimate(
         }
         // SAFETY: the caller's arrays and workspace, of the lengths the header states.
         let (samples, out, workspace) = unsafe {
-            let samples = samples::read_without_known(&core, given, integrals)?;
-            let len = cv::workspace_len::<Best>(&core, given.n).map_err(status_of)?;
+            let samples = samples::read(&core, given, integrals, false)?;
+            let len = cv::workspace_len::<Best>(&core, given.n)?;
             (samples, convert::rooms(out, integrals)?, convert::workspace::<Best>(workspace, bytes, len)?)
         };
-        match out {
-            [out] => {
-                out.write(c_estimate(&dispatch::estimate(&core, samples, workspace).map_err(status_of)?));
-                Ok(())
-            }
-            _ => each(&core, samples, given.n, workspace, out),
+        if let [out] = out {
+            out.write(c_estimate(&dispatch::estimate(&core, samples, workspace)?));
+            return Ok(());
         }
+        let (n, stride) = (given.n, core.step());
+        let integral = |index: usize| {
+            let (first, end) = (index * n, (index + 1) * n);
+            // The last row may end early.
+            let u = samples.u.get(first * stride..(end * stride).min(samples.u.len()));
+            let f = samples.f.get(first * core.channels..end * core.channels);
+            Samples::new(u.unwrap_or_default(), f.unwrap_or_default())
+        };
+        // Before anything is written.
+        (0..integrals).try_for_each(|index| integral(index).check(&core))?;
+        for (index, out) in out.iter_mut().enumerate() {
+            out.write(c_estimate(&dispatch::estimate(&core, integral(index), workspace)?));
+        }
+        Ok(())
     })())
-}
-
-/// One integral after the other.
-fn each(
-    config: &Config,
-    samples: Samples<'_>,
-    n: usize,
-    workspace: &mut [Best],
-    out: &mut [Room<nf_estimate>],
-) -> Result<(), nf_status> {
-    let stride = config.step();
-    let integral = |integral: usize| {
-        let (first, end) = (integral * n, (integral + 1) * n);
-        // The last row may end early.
-        let u = samples.u.get(first * stride..(end * stride).min(samples.u.len()));
-        let f = samples.f.get(first * config.channels..end * config.channels);
-        Samples::new(u.unwrap_or_default(), f.unwrap_or_default())
-    };
-    // Before anything is written.
-    (0..out.len()).try_for_each(|index| integral(index).check(config)).map_err(status_of)?;
-    for (index, out) in out.iter_mut().enumerate() {
-        let estimate = dispatch::estimate(config, integral(index), workspace).map_err(status_of)?;
-        out.write(c_estimate(&estimate));
-    }
-    Ok(())
 }

@@ -59,15 +59,15 @@ pub unsafe extern "C" fn nf_cv_gradient_descent(
         if core.estimator != Estimator::GradientDescent || core.controls > 0 {
             return Err(NF_ERR_UNSUPPORTED);
         }
-        let columns = core.terms().map_err(status_of)? - 1;
+        let columns = core.terms()? - 1;
         // SAFETY: the caller's arrays and workspace, of the lengths the header states.
         let (samples, coefficients, workspace) = unsafe {
-            let samples = samples::read_without_known(&core, given, 1)?;
+            let samples = samples::read(&core, given, 1, false)?;
             let coefficients = convert::slice_mut(coefficients, convert::product(core.regressed(), columns)?)?;
-            let len = cv::workspace_len::<Best>(&core, given.n).map_err(status_of)?;
+            let len = cv::workspace_len::<Best>(&core, given.n)?;
             (samples, coefficients, convert::workspace::<Best>(workspace, bytes, len)?)
         };
-        let estimate = cv::gradient_descent(&core, samples, coefficients, workspace).map_err(status_of)?;
+        let estimate = cv::gradient_descent(&core, samples, coefficients, workspace)?;
         out.write(c_estimate(&estimate));
         Ok(())
     })())

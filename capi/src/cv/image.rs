@@ -6,7 +6,7 @@ use crate::convert;
 use crate::dispatch;
 use crate::status::*;
 use crate::wrong::{Wrong, pick};
-use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Rectangle, Samples};
+use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Rectangle};
 
 /// The pixels of an image, or of a part of one, and what is known of them. All zero but width and height: nothing.
 /// Pixel (x, y) of frame t has the number (t height + y) width + x.
@@ -66,7 +66,7 @@ pub unsafe extern "C" fn nf_cv_image_needed(image: *const nf_cv_image, out: *mut
     status((|| {
         // SAFETY: the caller's pointers, checked there. A copy, as `out` may be a part of the image.
         let (image, out) = unsafe { (*convert::reference(image)?, convert::room(out)?) };
-        let needed = core_image(&image, false)?.needed().map_err(status_of)?;
+        let needed = core_image(&image, false)?.needed()?;
         let [x, y, width, height] = [needed.x, needed.y, needed.width, needed.height].map(|value| value as u32);
         out.write(nf_cv_rectangle { x, y, width, height });
         Ok(())
@@ -86,7 +86,7 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
         let (config, image, samples) =
             unsafe { (convert::reference(config)?, convert::reference(image)?, convert::reference(samples)?) };
         let image = core_image(image, !samples.known.is_null())?;
-        cv::image_workspace_len(&supported(config)?, &image, samples.n).map_err(status_of)
+        Ok::<_, nf_status>(cv::image_workspace_len(&supported(config)?, &image, samples.n)?)
     };
     len().ok().and_then(|len| len.checked_mul(size_of::<f32>())).unwrap_or(0)
 }
@@ -121,18 +121,24 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
             unsafe { (convert::reference(config)?, convert::reference(image)?, convert::reference(samples)?) };
         let core = supported(config)?;
         let mut image = core_image(of, !given.known.is_null())?;
-        let [pixels, estimates] = image.counts().map_err(status_of)?;
+        let [pixels, estimates] = image.counts()?;
         let values = convert::product(pixels, core.channels)?;
-        // SAFETY: the caller's arrays, of the lengths the header states.
-        let (samples, out) = unsafe {
+        // SAFETY: the caller's arrays and workspace, of the lengths the header states.
+        let (samples, out, workspace) = unsafe {
             image.surfaces = array(of.surfaces, pixels)?;
             image.factors = array(of.factors, values)?;
             image.known = array(given.known, convert::product(values, given.n)?)?;
             image.known_integrals = array(given.known_integrals, values)?;
-            (samples::read(&core, given, pixels)?, convert::rooms(out, estimates)?)
+            let (samples, out) = (samples::read(&core, given, pixels, true)?, convert::rooms(out, estimates)?);
+            let len = cv::image_workspace_len(&core, &image, given.n)?;
+            (samples, out, convert::workspace(workspace, bytes, len)?)
         };
-        // SAFETY: the caller's workspace, `bytes` long.
-        unsafe { estimate(&core, &image, samples, given.n, (workspace, bytes), out) }
+        let mut write = |pixel: usize, estimate: Estimate| {
+            if let Some(out) = out.get_mut(pixel) {
+                out.write(c_estimate(&estimate));
+            }
+        };
+        Ok(dispatch::estimate_image(&core, &image, samples, workspace, &mut write)?)
     })())
 }
 
@@ -171,25 +177,4 @@ fn core_image(image: &nf_cv_image, has_known: bool) -> Result<Image<'static>, Wr
     };
     let (given, wanted) = (rectangle(&image.given), rectangle(&image.wanted));
     Ok(Image { frames, window, stride, unordered, surfaces, known, given, wanted, ..Image::new(width, height) })
-}
-
-/// # Safety
-/// The workspace's pointer must be NULL or point to as many bytes as stand beside it.
-unsafe fn estimate(
-    config: &Config,
-    image: &Image<'_>,
-    samples: Samples<'_>,
-    n: usize,
-    (workspace, bytes): (*mut core::ffi::c_void, usize),
-    out: &mut [convert::Room<nf_estimate>],
-) -> Result<(), nf_status> {
-    let mut write = |pixel: usize, estimate: Estimate| {
-        if let Some(out) = out.get_mut(pixel) {
-            out.write(c_estimate(&estimate));
-        }
-    };
-    let needed = cv::image_workspace_len(config, image, n).map_err(status_of)?;
-    // SAFETY: the caller's promise, see above.
-    let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
-    dispatch::estimate_image(config, image, samples, workspace, &mut write).map_err(status_of)
 }

@@ -29,7 +29,7 @@ pub struct nf_cv_samples {
     pub known_integrals: *const f32,
 }
 
-/// What an estimate reads: the arrays of `integrals` times n rows.
+/// What an estimate reads: the arrays of `integrals` times n rows. `knows`: whether it takes `known`.
 ///
 /// # Safety
 /// Non-NULL pointers must point to as many floats as the configuration says for so many rows.
@@ -37,7 +37,12 @@ pub(super) unsafe fn read<'a>(
     config: &Config,
     samples: &nf_cv_samples,
     integrals: usize,
+    knows: bool,
 ) -> Result<Samples<'a>, nf_status> {
+    let has_known = !samples.known.is_null() || !samples.known_integrals.is_null();
+    if has_known && !knows {
+        return Err(NF_ERR_UNSUPPORTED);
+    }
     // What a configuration out of range says about lengths means nothing; these fields are all that matters here.
     let in_range = config.dims <= 16 && config.channels <= 4 && config.controls <= 4;
     if !in_range || (config.stride != 0 && config.stride < config.dims) {
@@ -55,20 +60,4 @@ pub(super) unsafe fn read<'a>(
             control_integrals: convert::slice(samples.control_integrals, config.controls)?,
         })
     }
-}
-
-/// [`read`] for an estimate that knows nothing of `known`.
-///
-/// # Safety
-/// As for [`read`].
-pub(super) unsafe fn read_without_known<'a>(
-    config: &Config,
-    samples: &nf_cv_samples,
-    integrals: usize,
-) -> Result<Samples<'a>, nf_status> {
-    if !samples.known.is_null() || !samples.known_integrals.is_null() {
-        return Err(NF_ERR_UNSUPPORTED);
-    }
-    // SAFETY: passed on to the caller.
-    unsafe { read(config, samples, integrals) }
 }

@@ -43,7 +43,7 @@ pub unsafe extern "C" fn nf_tile_from_bytes(bytes: *const c_void, len: usize, ou
         convert::usable(bytes)?;
         // SAFETY: the caller passes `len` bytes that no one writes meanwhile.
         let bytes = unsafe { convert::slice(bytes.cast::<u8>(), len) }?;
-        let tile = Tile::from_bytes(bytes).map_err(status_of)?;
+        let tile = Tile::from_bytes(bytes)?;
         // SAFETY: the caller passes NULL or room for a tile.
         unsafe { convert::write(out, view(tile)) }
     })())

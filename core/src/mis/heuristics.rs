@@ -105,10 +105,9 @@ impl Shares {
         for (share, (&p, &n)) in share.iter_mut().zip(pdf.iter().zip(counts)) {
             let density = match (delta, p == f32::INFINITY) {
                 (true, true) => 1.0,
-                (true, false) => 0.0,
-                // An infinite density comes here only with n = 0: it must not become 0 * infinity.
-                (false, true) => 0.0,
                 (false, false) => f64::from(p),
+                // An infinite density beside none that counts has n = 0: it must not become 0 * infinity.
+                _ => 0.0,
             };
             *share = f64::from(n) * density;
             largest = largest.max(*share);
