@@ -132,8 +132,8 @@ fn encode(picture: Option<DynamicImage>, format: ImageFormat) -> Result<Vec<u8>>
     Ok(bytes.into_inner())
 }
 
-/// C99 and C++: the dimensions as macros, the integers as a static constant array `NAME`, or `tile_NAME` if the language
-/// has given the name a meaning.
+/// C99 and C++: the dimensions as macros, the integers as a static constant array `NAME`, or `tile_NAME` if the
+/// language has given the name a meaning.
 ///
 /// # Errors
 /// The payload has another length than the shape says.
