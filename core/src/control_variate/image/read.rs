@@ -8,6 +8,18 @@ use crate::matrix::{at, first_mut, from, halves_mut, part_mut};
 use crate::real::{Real, saturate};
 use core::ops::Range;
 
+/// A column of some rows of `WIDTH` numbers, for each lane from where its rows start.
+fn put_column<const WIDTH: usize>(rows: &[f32], starts: &[usize; LANES], column: usize, out: &mut [Eight]) {
+    for (lane, start) in starts.iter().enumerate() {
+        let (rows, _) = from(rows, *start).as_chunks::<WIDTH>();
+        match (rows.first_chunk::<AT_ONCE>(), out.as_chunks_mut::<AT_ONCE>().0) {
+            // Four are looked for once.
+            (Some(rows), [out]) => out.iter_mut().zip(rows).for_each(|(out, row)| out[lane] = row[column % WIDTH]),
+            _ => out.iter_mut().zip(rows).for_each(|(out, row)| out[lane] = row[column % WIDTH]),
+        }
+    }
+}
+
 impl Call<'_> {
     /// The pixels' lowest and highest values, as fits see them.
     pub(super) fn range(&self, pixels: &[usize; LANES], channel: usize) -> [Eight; 2] {
@@ -61,21 +73,12 @@ impl Call<'_> {
             *out = self.gather(rows, pixels, (each, first), channel);
             return;
         }
-        for (lane, pixel) in pixels.iter().enumerate() {
-            let rows = from(rows, (pixel * each + first) * channels + channel);
-            match (rows.first_chunk::<AT_ONCE>(), out.as_chunks_mut::<AT_ONCE>().0) {
-                // One after the other, and looked for once.
-                (Some(rows), [out]) if channels == 1 => {
-                    for (out, row) in out.iter_mut().zip(rows) {
-                        out[lane % LANES] = *row;
-                    }
-                }
-                _ => {
-                    for (index, out) in out.iter_mut().enumerate() {
-                        out[lane % LANES] = at(rows, index * channels);
-                    }
-                }
-            }
+        let starts = pixels.map(|pixel| (pixel * each + first) * channels);
+        match channels {
+            1 => put_column::<1>(rows, &starts, channel, out),
+            2 => put_column::<2>(rows, &starts, channel, out),
+            3 => put_column::<3>(rows, &starts, channel, out),
+            _ => put_column::<4>(rows, &starts, channel, out),
         }
         out.iter_mut().for_each(|values| self.divide_by_factors(pixels, channel, values));
     }
