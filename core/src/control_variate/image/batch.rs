@@ -39,7 +39,7 @@ pub(super) struct Batch<'a> {
     pub(super) call: &'a Call<'a>,
     pub(super) terms: Terms,
     pub(super) lanes: [Group; LANES],
-    /// How many blocks there are.
+    /// Blocks.
     pub(super) len: usize,
     pub(super) is_joined: bool,
     /// Whether the slots of a block are of one colour.
@@ -153,7 +153,6 @@ impl<'a> Batch<'a> {
         at(self.within.part(colour).squares, value)
     }
 
-    /// Of which colour a slot is.
     #[inline]
     pub(super) fn colour(&self, (block, row): (usize, usize)) -> usize {
         (if self.has_colours { block } else { row }) % COLOURS
@@ -294,7 +293,6 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Values in units.
     #[inline]
     pub(super) fn put_in_units(&self, values: &mut [Four]) {
         for (value, units) in values.iter_mut().zip(self.units.iter().take(self.call.config.channels).cycle()) {

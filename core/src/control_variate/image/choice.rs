@@ -121,7 +121,6 @@ pub(super) struct Spreads<'a> {
     pub(super) freedom: Eight,
     /// Pixels of the colours.
     pixels: Eight,
-    /// Whether they have several samples.
     has_several: bool,
     choices: Choices,
 }

@@ -50,7 +50,6 @@ const SQRT_3: f32 = 1.732_050_8;
 const SQRT_5: f32 = 2.236_068;
 
 impl Layout<'_> {
-    /// Whether edges are looked for.
     pub(super) fn has_edges(&self) -> bool {
         self.config.edges > 0 && self.n >= FEWEST_SAMPLES && !self.is_single_fit()
     }
@@ -101,7 +100,6 @@ const LINE: [f32; POINTS] = {
     line
 };
 
-/// The functions of two coordinates.
 #[inline(always)]
 fn functions(x: &Four, y: &Four) -> [Four; FUNCTIONS] {
     let mut out = [[NONE; AT_ONCE]; FUNCTIONS];

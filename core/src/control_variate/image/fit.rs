@@ -25,7 +25,6 @@ const FAINT: f32 = 1e-24;
 pub(super) struct Fits<'a> {
     /// For each block and value, each candidate's correction of its mean.
     pub(super) corrections: &'a mut [Four],
-    /// How many candidates there are.
     pub(super) count: usize,
     values: usize,
     /// Of several samples in each pixel, what the fits leave of the samples' sums of squares about their pixel's mean:

@@ -50,7 +50,6 @@ pub(super) struct Group {
     pub(super) window: usize,
     /// Where its pixels begin in the list.
     pub(super) start: usize,
-    /// How many pixels it has.
     pub(super) len: usize,
     /// Whether it has lit and dark samples, if that matters.
     pub(super) has_edges: bool,
@@ -61,7 +60,6 @@ const RECORD: usize = 4;
 
 /// The groups of some windows, and what was found for them.
 pub(super) struct Groups<'a> {
-    /// How many groups there are.
     pub(super) count: usize,
     channels: usize,
     /// Numbers of a record.

@@ -11,7 +11,6 @@ pub(super) type Eight = Lanes<f32>;
 pub(super) type Four = [Eight; AT_ONCE];
 /// Nothing in any lane.
 pub(super) const NONE: Eight = [0.0; LANES];
-/// How many colours there are.
 pub(super) const COLOURS: usize = 4;
 /// Samples or pixels that are worked on at a time.
 pub(super) const AT_ONCE: usize = 4;
@@ -50,7 +49,6 @@ pub(super) fn empty(sums: &mut [Eight]) {
     }
 }
 
-/// The sum of four.
 #[inline(always)]
 pub(super) fn total([a, b, c, d]: &Four) -> Eight {
     plus(&plus(a, b), &plus(c, d))

@@ -31,7 +31,6 @@ pub(super) struct Apart<'a> {
     width: usize,
     /// Own columns of a slice.
     own: usize,
-    /// The sums of each slice.
     totals: Sums<'a>,
     /// For each slice rows of L, as wide as its own columns: of these, with 1 / D on the diagonal, of the shared ones,
     /// of values, and of units of the fixed columns.

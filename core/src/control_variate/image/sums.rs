@@ -71,7 +71,6 @@ fn every(step: usize, numbers: &[f32]) -> Eight {
 }
 
 impl<'a> Band<'a> {
-    /// Empty.
     pub(super) fn new(call: &Call<'_>, rows: usize, arena: &mut Arena<'a, f32>) -> Self {
         let eights = call.eights().saturating_mul(rows).saturating_mul(call.windows.frames());
         let sums = arena.take_lanes(eights.saturating_mul(sums_len(call.config.channels)));
