@@ -107,8 +107,10 @@ impl<'a> Batch<'a> {
         let [Group { len, .. }, ..] = lanes;
         let slots = if call.is_joined() { len.div_ceil(LANES) } else { len };
         // Blocks come by as many as there are colours; sums of each are then apart.
-        let parts = if call.has_colours() { COLOURS } else { 1 };
-        let len = parts * slots.div_ceil(parts * AT_ONCE);
+        let (parts, len) = match call.has_colours() {
+            true => (COLOURS, COLOURS * slots.div_ceil(COLOURS * AT_ONCE)),
+            false => (1, slots.div_ceil(AT_ONCE)),
+        };
         let (channels, values, each) = (call.config.channels, call.values(), |count: usize| len.saturating_mul(count));
         let known = if call.image.has_known() { each(channels * AT_ONCE) } else { 0 };
         let ((kept, apart), summed) = (kept(&terms, call.n), terms.of_slices(values, call.n));
