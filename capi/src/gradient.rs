@@ -63,7 +63,7 @@ pub unsafe extern "C" fn nf_gradient_init(
 ///
 /// solver, ridge, items, pdf[batch * techniques], technique[batch]: as for nf_omis_weights. beta: the momentum, 0..1. A
 /// batch that is t steps old counts beta^t, divided by the sum of those weights: 0 forgets the earlier batches, 1
-/// averages all, and from 2^16 on what 1 - 2^-16 does. Older gradients lag: with an optimiser's momentum, use 0.
+/// averages all; from 2^16 batches on, more is 1 - 2^-16. Older gradients lag: with an optimiser's momentum, use 0.
 /// gradient[batch * parameters]: those of each sample, row after row, finite, unweighted; read twice.
 /// estimate[parameters]: the output; one beyond the range of float becomes the largest finite float.
 ///

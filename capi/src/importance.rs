@@ -124,9 +124,10 @@ pub unsafe extern "C" fn nf_importance_gradient(
         // SAFETY: the caller passes arrays of these lengths, of which the written one is no part of the other.
         let (gradient, importance) = unsafe { (convert::slice(gradient, len)?, convert::outputs(importance, all)?) };
         finite(gradient)?;
-        let rows = gradient.chunks_exact(outputs.max(1));
-        for (out, row) in importance.chunks_exact_mut(techniques.max(1)).zip(rows) {
-            importance::nodes(row, split, out)?;
+        // Not zipped: chunks would be counted, and the division may panic.
+        let mut rows = gradient.chunks_exact(outputs.max(1));
+        for out in importance.chunks_exact_mut(techniques.max(1)) {
+            importance::nodes(rows.next().unwrap_or_default(), split, out)?;
         }
         Ok(())
     })())

@@ -203,9 +203,14 @@ fn transparent_halves() {
     assert!((centre(false) - 0.5).abs() < 0.01 && (centre(true) - 0.75).abs() < 0.01);
     let photo = Photo::read(&place.path("half.exr")).unwrap();
     assert!(photo.pixels[0][0] > 0.999 && photo.pixels[7][0] < 0.8);
-    // One that is reduced: opaque white beside transparent black.
-    let checks = RgbaImage::from_fn(3000, 3000, |x, y| Rgba([[0; 4], [255; 4]][((x + y) % 2) as usize]));
-    assert!(Photo::new(&checks.into()).unwrap().pixels.iter().flatten().all(|value| *value > 0.999));
+    // One that is reduced: opaque white, or a grey, beside transparent black.
+    for (grey, mean) in [(255, 1.0), (51, 0.6)] {
+        let checks =
+            RgbaImage::from_fn(4000, 3000, |x, y| Rgba([[0; 4], [grey, grey, grey, 255]][((x + y) % 2) as usize]));
+        let photo = Photo::new(&checks.into()).unwrap();
+        let total: f32 = photo.pixels.iter().map(|pixel| pixel[0] - mean).sum();
+        assert!((total / photo.pixels.len() as f32).abs() < 1e-3 && photo.pixels.len() <= 8_000_000, "{grey}");
+    }
     let mut light = Rgb32FImage::from_pixel(3000, 3000, Rgb([0.25; 3]));
     light.put_pixel(2990, 2980, Rgb([f32::NAN; 3]));
     let error = Photo::new(&light.into()).unwrap_err().to_string();

@@ -80,8 +80,8 @@ typedef struct nf_cv_config {
     uint32_t color; // NF_COLOR_*
     // Runs of samples, in order, for NF_CV_K_FOLD (images have two) and streaming NF_CV_ROBUST: 2 to 16; 0 means 4.
     uint32_t folds;
-    // Ridge strength per sample, raised to 1e-12, in float 1e-5; 0, and NF_RIDGE_AUTO of images, streams and
-    // NF_CV_INCREMENTAL: the default. NF_CV_GRADIENT_DESCENT, and NF_CV_ROBUST of one integral, do not use it.
+    // Ridge strength per sample, raised to 1e-12, in float 1e-5; 0, and NF_RIDGE_AUTO of images, NF_CV_INCREMENTAL and
+    // streaming NF_CV_ROBUST: the default. Gradient descent ignores it, NF_CV_ROBUST of one integral but for controls.
     float ridge;
 } nf_cv_config;
 

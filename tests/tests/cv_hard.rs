@@ -120,13 +120,13 @@ fn large_fits_are_finite() {
     // At the limits of dims, orders and channels.
     for (dims, order) in [1, 6, 11, 16].into_iter().flat_map(|dims| (0..=7).map(move |order| (dims, order))) {
         let config = Config { iterations: 16, ..Config::new(dims, order, 4) };
-        if config.terms().is_ok() {
+        if let Ok(terms) = config.terms() {
             let u = points(20, dims, &mut rng);
             let smooth = values(&u, dims, smooth);
             let f: Vec<f32> = smooth.iter().flat_map(|f| [1.0, 2.0, 3.0, 4.0].map(|c| c * f)).collect();
             for (what, estimate) in every_estimate(&config, &u, &f) {
-                // Least squares of 20 samples does not always know what it gains.
-                let is_known = estimate.gain.is_finite() || what.contains("LeastSquares");
+                // Least squares of no more samples than terms does not know what it gains.
+                let is_known = estimate.gain.is_finite() || terms >= 20 && what.contains("LeastSquares");
                 assert!(is_sound(&estimate) && is_known, "{what}: {estimate:?}");
             }
         }

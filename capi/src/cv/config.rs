@@ -99,8 +99,8 @@ pub struct nf_cv_config {
     pub color: u32,
     /// Runs of samples, in order, for NF_CV_K_FOLD (images have two) and streaming NF_CV_ROBUST: 2 to 16; 0 means 4.
     pub folds: u32,
-    /// Ridge strength per sample, raised to 1e-12, in float 1e-5; 0, and NF_RIDGE_AUTO of images, streams and
-    /// NF_CV_INCREMENTAL: the default. NF_CV_GRADIENT_DESCENT, and NF_CV_ROBUST of one integral, do not use it.
+    /// Ridge strength per sample, raised to 1e-12, in float 1e-5; 0, and NF_RIDGE_AUTO of images, NF_CV_INCREMENTAL and
+    /// streaming NF_CV_ROBUST: the default. Gradient descent ignores it, NF_CV_ROBUST of one integral but for controls.
     pub ridge: f32,
 }
 

@@ -235,12 +235,13 @@ impl Config {
 pub struct Estimate {
     /// The integral, for each channel; unused channels are zero.
     pub mean: [f32; 4],
-    /// An estimate of the standard error of each mean; infinite for one sample, for least squares of no more samples
-    /// than terms, of which no residual is left to tell, and for a luminance ratio of samples whose luminances cancel.
+    /// An estimate of the standard error of each mean; infinite for one sample, for a luminance ratio of samples whose
+    /// luminances cancel and, of values that are not all equal, for least squares of no more samples than terms, of
+    /// which no residual is left to tell.
     pub std_error: [f32; 4],
     /// Samples that were used.
     pub samples: u32,
-    /// Estimated variance relative to the plain mean's, averaged over the channels: 1 means no gain. Infinite for
-    /// least squares of no more samples than terms.
+    /// Estimated variance relative to the plain mean's, averaged over the channels: 1 means no gain. Infinite
+    /// where the standard error is for lack of residuals.
     pub gain: f32,
 }

@@ -94,8 +94,8 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
 
     /// Adds a batch and estimates the gradient of the mean loss: `estimate` has one element per parameter.
     ///
-    /// - `beta` in 0..=1: the weight that earlier batches keep; 0 forgets them, 1 averages all. From 2^16 batches on 1
-    ///   does what 1 - 2^-16 does: `f32` averages no more, and these within a part in 500.
+    /// - `beta` in 0..=1: the weight that earlier batches keep; 0 forgets them, 1 averages all. From 2^16 batches on
+    ///   more than 1 - 2^-16 does what that does: `f32` averages no more, and these within a part in 500.
     /// - `gradient[s * parameters + p]`: the gradient of sample s by parameter p, finite.
     ///
     /// Sums are in `f32`, added in an order that does not depend on the processor. An estimate beyond the range of

@@ -1,8 +1,8 @@
 //! Pictures as input.
 
 use super::colour::encode;
+use super::resample::resample;
 use crate::error::{Error, Result};
-use image::imageops::thumbnail;
 use image::{DynamicImage, GenericImageView, Rgba, Rgba32FImage};
 use std::path::Path;
 
@@ -46,13 +46,20 @@ impl Photo {
         if let Some([width, height]) = reduced(width, height).filter(|_| !linear && opaque()) {
             return Photo::new(&image.thumbnail_exact(width, height));
         }
-        let mut rgba = over_white(image)?;
-        while let Some([width, height]) = reduced(rgba.width(), rgba.height()) {
-            rgba = thumbnail(&rgba, width, height);
+        let rgba = over_white(image)?;
+        // Not the image crate's: of floats its means are too large.
+        let [columns, rows] = reduced(width, height).unwrap_or([width, height]).map(|length| length as usize);
+        let (width, height) = (width as usize, height as usize);
+        let cell = (width * height) as f64 / (columns * rows) as f64;
+        let mut pixels = vec![[0.0; 3]; columns * rows];
+        for channel in 0..3 {
+            let values: Vec<f32> = rgba.pixels().map(|pixel| pixel[channel]).collect();
+            for (pixel, sum) in pixels.iter_mut().zip(resample(width, height, &values, columns, rows)) {
+                let value = (sum / cell) as f32;
+                pixel[channel] = if linear { encode(value.clamp(0.0, 1.0)) } else { value };
+            }
         }
-        let value = |value: f32| if linear { encode(value.clamp(0.0, 1.0)) } else { value };
-        let pixels = rgba.pixels().map(|Rgba([red, green, blue, _])| [*red, *green, *blue].map(value)).collect();
-        Ok(Photo { width: rgba.width() as usize, height: rgba.height() as usize, pixels })
+        Ok(Photo { width: columns, height: rows, pixels })
     }
 
     /// A picture from a function of column and row.

@@ -56,7 +56,7 @@ impl<'a> Fits<'a> {
             within: arena.take_lanes(if call.n > 1 { values * COLOURS * count } else { 0 }),
             system: Sums::new(1, columns, values, arena),
             between: Sums::new(1, terms.of_means(), values, arena),
-            coefficients: arena.take_lanes(values * count * columns),
+            coefficients: arena.take_lanes(values * count * if call.n > 1 { columns } else { terms.fixed() }),
             units: arena.take_lanes(terms.fixed() * columns),
             solved: arena.take_fours(columns),
             penalties: arena.take(terms.columns()),

@@ -87,7 +87,7 @@ impl<'a> Apart<'a> {
             border: arena.take_lanes(packed_len(width)),
             sides: arena.take_lanes((values + terms.fixed()) * width),
             gathered: arena.take_lanes(order * terms.all_own()),
-            solved: arena.take_lanes(order),
+            solved: arena.take_lanes(terms.all_own() + width),
             columns: arena.take_fours(width),
             trends: arena.take_lanes(trends),
             coefficients: arena.take_lanes(coefficients),
