@@ -39,7 +39,7 @@ pub(super) struct Batch<'a> {
     pub(super) call: &'a Call<'a>,
     pub(super) terms: Terms,
     pub(super) lanes: [Group; LANES],
-    /// Blocks.
+    /// How many blocks there are, also where room for them is only counted.
     pub(super) len: usize,
     pub(super) is_joined: bool,
     /// Whether the slots of a block are of one colour.
@@ -142,7 +142,7 @@ impl<'a> Batch<'a> {
     /// The blocks that have pixels of some colours.
     pub(super) fn blocks(&self, colours: Colours) -> impl Iterator<Item = usize> + use<> {
         let has_colours = self.has_colours;
-        (0..self.inside.len()).filter(move |&block| !has_colours || colours.has(block))
+        (0..self.len).filter(move |&block| !has_colours || colours.has(block))
     }
 
     /// A sum over all pixels of a group, by those of its lanes.
@@ -153,6 +153,11 @@ impl<'a> Batch<'a> {
     /// What there is of the samples of a colour about their pixels' means.
     pub(super) fn whole(&self, value: usize, colour: usize) -> Eight {
         at(self.within.part(colour).squares, value)
+    }
+
+    /// Where what there is of each channel and slot has that of one.
+    pub(super) fn entry(&self, channel: usize, (block, row): (usize, usize)) -> usize {
+        (channel * self.len + block) * AT_ONCE + row
     }
 
     #[inline]
@@ -199,8 +204,8 @@ impl<'a> Batch<'a> {
         let corners = self.lanes.map(|group| call.pixel(call.window(group.window), Place::default(), 0) as u32);
         let (members, lens) =
             (self.lanes.map(|group| groups.members(&group)), self.lanes.map(|group| group.len as u32));
-        let (mut other, slots) = (None, self.inside.len() * AT_ONCE);
-        for block in 0..self.inside.len() {
+        let mut other = None;
+        for block in 0..self.len {
             for row in 0..AT_ONCE {
                 let (mut one, mut places) = (NONE, [0.0; LANES].map(Place::read));
                 let mut numbers = self.members((block, row));
@@ -224,7 +229,8 @@ impl<'a> Batch<'a> {
                 }
                 let pixels = numbers.map(|number| (number & Image::MAX_PIXELS) as usize);
                 for channel in 0..channels {
-                    if let Some(range) = self.ranges.get_mut(channel * slots + block * AT_ONCE + row) {
+                    let entry = self.entry(channel, (block, row));
+                    if let Some(range) = self.ranges.get_mut(entry) {
                         *range = call.range(&pixels, channel).map(|value| only(&one, &value));
                     }
                 }

@@ -58,14 +58,16 @@ impl Layout<'_> {
 impl Call<'_> {
     /// Whether a group, `members` of a window, has lit and dark samples, if edges are looked for.
     pub(super) fn has_edge(&self, window: usize, members: &[f32], len: usize) -> bool {
+        if !self.has_edges() || len < FEWEST_PIXELS {
+            return false;
+        }
         let (window, channels) = (self.window(window), self.config.channels);
         let is_lit = |member: usize, sample: usize| {
             let pixel = self.pixel(window, Place::read(at(members, member)), member);
             row_at(self.reader.inputs(), channels, pixel * self.n + sample).iter().any(|&value| value > 0.0)
         };
-        let mut all = (0..len).flat_map(|member| (0..self.n).map(move |sample| (member, sample)));
-        let is_other = |(member, sample)| is_lit(member, sample) != is_lit(0, 0);
-        self.has_edges() && len >= FEWEST_PIXELS && all.any(is_other)
+        let first = is_lit(0, 0);
+        (0..len).any(|member| (0..self.n).any(|sample| is_lit(member, sample) != first))
     }
 }
 
@@ -154,7 +156,7 @@ impl<'a> Edges<'a> {
     #[inline(always)]
     pub(super) fn load(&mut self, batch: &Batch<'_>) {
         self.sums.iter_mut().for_each(Sums::empty);
-        for block in 0..batch.inside.len() {
+        for block in 0..batch.len {
             self.read(batch, block);
             self.add(batch, block);
         }

