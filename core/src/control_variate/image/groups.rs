@@ -1,16 +1,19 @@
 //! Groups: the pixels of one window and one surface, which share fits.
 
 use super::call::{Call, Layout};
-use super::pixels::Image;
+use super::pixels::{Image, Rectangle};
 use crate::arena::Arena;
 use crate::lanes::LANES;
-use crate::matrix::{at, first, from, from_mut, halves, halves_mut, part, row_at, row_at_mut};
+use crate::matrix::{at, copy, first, from, from_mut, halves, halves_mut, part, row_at, row_at_mut};
 use heapless::Vec;
 
 /// Windows that are worked on together hold at most so many pixels, or are eight.
 const PIXELS: usize = 1 << 14;
 /// Pixels in no order that are so many share one fit by eight parts.
 const MANY: usize = 64;
+
+/// Something of each pixel of a window.
+type Pixels<T> = Vec<T, { Image::MAX_WINDOW }>;
 
 /// Where a pixel is in its window: its column, row and frame, each below 1024.
 ///
@@ -158,32 +161,40 @@ impl Call<'_> {
             groups.push(self, 0, 0, self.windows.pixels());
             return groups.sort();
         }
+        // Where the pixels of any window are, and how far their numbers are from its first pixel's.
+        let (mut places, mut numbers) = (Pixels::<f32>::new(), Pixels::<u32>::new());
+        let Rectangle { x: left, y: top, .. } = self.windows.given;
+        self.each_place(|[x, y, frame]| {
+            // A window has no more pixels than that.
+            let _ = places.push(f32::from_bits(Place::new(x, y, frame).0));
+            let _ = numbers.push(self.windows.number(left + x, top + y, frame) as u32);
+        });
         let mut filled = 0;
-        // The pixels of a window that are in no group yet.
-        let mut left: Vec<(Place, u32), { Image::MAX_WINDOW }> = Vec::new();
+        // The pixels of a window that are in no group yet, and their surfaces.
+        let mut left = Pixels::<(f32, u32)>::new();
         for index in first..end {
             let [column, line] = self.window(index);
-            self.each_place(|[x, y, frame]| {
-                let number = self.windows.number(column + x, line + y, frame);
-                // A window has no more pixels than that.
-                let _ = left.push((Place::new(x, y, frame), at(self.image.surfaces, number)));
-            });
+            let surfaces = from(self.image.surfaces, self.windows.number(column, line, 0));
+            let each = numbers.iter().map(|&number| at(surfaces, number as usize));
+            // Mostly one.
+            if each.clone().all(|surface| surface == at(surfaces, 0)) {
+                copy(from_mut(groups.list, filled), &places);
+                filled = groups.push(self, index, filled, places.len());
+                continue;
+            }
+            left.extend(places.iter().copied().zip(each));
             while let Some(&(_, surface)) = left.first() {
-                let start = filled;
+                let mut len = 0;
                 left.retain(|&(place, other)| {
                     if other == surface
-                        && let Some(out) = groups.list.get_mut(filled)
+                        && let Some(out) = groups.list.get_mut(filled + len)
                     {
-                        *out = f32::from_bits(place.0);
-                        filled += 1;
+                        *out = place;
+                        len += 1;
                     }
                     other != surface
                 });
-                if filled - start < self.least() {
-                    filled = start;
-                } else {
-                    groups.push(self, index, start, filled - start);
-                }
+                filled = groups.push(self, index, filled, len);
             }
         }
         groups.sort();
@@ -191,12 +202,17 @@ impl Call<'_> {
 }
 
 impl Groups<'_> {
-    fn push(&mut self, call: &Call<'_>, window: usize, start: usize, len: usize) {
+    /// Adds a group, unless its pixels are too few, and says where the list goes on.
+    fn push(&mut self, call: &Call<'_>, window: usize, start: usize, len: usize) -> usize {
+        if len < call.least() {
+            return start;
+        }
         let has_edges = call.has_edge(window, part(self.list, start, len), len);
         if let Some(record) = row_at_mut(self.records, self.width, self.count).first_chunk_mut::<RECORD>() {
             *record = [window, start, len, usize::from(has_edges)].map(|number| f32::from_bits(number as u32));
             self.count += 1;
         }
+        start + len
     }
 
     /// Group `index` in the order of their windows.

@@ -228,16 +228,21 @@ impl<'a> Sums<'a> {
     /// Makes it the sum of as large parts of another, those of some colours.
     #[inline(always)]
     pub(super) fn set_total(&mut self, of: &Sums<'_>, colours: Colours) {
-        let parts = rows(of.all, self.all.len()).enumerate().filter(|&(part, _)| colours.has(part));
-        for (index, (_, sums)) in parts.enumerate() {
-            if index == 0 {
-                copy(self.all, sums);
-                continue;
-            }
-            for (out, sum) in self.all.iter_mut().zip(sums) {
-                *out = plus(out, sum);
-                lanes::keep_together();
-            }
+        let parts = rows(of.all, self.all.len()).zip(0..).filter(|&(_, part)| colours.has(part)).map(|(part, _)| part);
+        let mut each = [&[][..]; COLOURS];
+        each.iter_mut().zip(parts).for_each(|(out, part)| *out = part);
+        let [a, b, c, d] = each;
+        // Mostly three, in one pass.
+        for (((out, a), b), c) in self.all.iter_mut().zip(a).zip(b).zip(c) {
+            *out = plus(&plus(a, b), c);
+            lanes::keep_together();
+        }
+        if c.is_empty() {
+            copy(self.all, a);
+        }
+        for (out, sum) in self.all.iter_mut().zip(if c.is_empty() { b } else { d }) {
+            *out = plus(out, sum);
+            lanes::keep_together();
         }
     }
 

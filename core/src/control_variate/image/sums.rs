@@ -7,7 +7,7 @@ use super::groups::{Groups, Place};
 use super::products::{Eight, NONE, empty, product};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES, Lanes};
-use crate::matrix::{at, from, halves_mut, row_at_mut, rows_mut};
+use crate::matrix::{at, first, from, halves_mut, row_at_mut, rows_mut};
 use crate::real::Real;
 
 /// Sums of a pixel that are not a channel's: the weight of the groups that it was in, of those with an error, and their
@@ -92,6 +92,7 @@ impl Call<'_> {
     pub(super) fn add(&self, groups: &Groups<'_>, band: &mut Band<'_>) {
         let channels = self.config.channels;
         let len = sums_len(channels);
+        const LEAST: usize = sums_len(1);
         let [rows, width] = [band.rows, self.eights() * LANES].map(|extent| extent as u32);
         let [across, down, _] = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
         let all = self.fits_without_edges();
@@ -137,11 +138,17 @@ impl Call<'_> {
                         })
                     });
                 }
+                // Those of one channel without a loop.
+                let Some((least, others)) = first(&sums, len).split_first_chunk::<LEAST>() else { return };
                 for (lane, &spot) in spots.iter().enumerate().take(group.len - begin) {
-                    let spot = spot as usize;
-                    let out = row_at_mut(band.sums, len, spot / LANES);
-                    for (out, sum) in out.iter_mut().zip(&sums) {
-                        out[spot % LANES] += sum[lane % LANES];
+                    let (spot, lane) = (spot as usize, lane % LANES);
+                    let out = band.sums.get_mut(spot / LANES * len..);
+                    let Some((out, more)) = out.and_then(|out| out.split_first_chunk_mut::<LEAST>()) else { break };
+                    for (out, sum) in out.iter_mut().zip(least) {
+                        out[spot % LANES] += sum[lane];
+                    }
+                    for (out, sum) in more.iter_mut().zip(others) {
+                        out[spot % LANES] += sum[lane];
                     }
                 }
             }
