@@ -565,8 +565,8 @@ fn warm_start_beats_cold() {
     assert_eq!(started, batch::<f64>(&config, &u, &f).unwrap());
 }
 
-/// A start far from the solution, of which few short steps leave the values farther than the mean is, gives the mean and
-/// is not lost: frame after frame ends where least squares is. What diverges is.
+/// A start far from the solution, of which few short steps leave the values farther than the mean is, gives the mean
+/// and is not lost: frame after frame ends where least squares is. What diverges is.
 #[test]
 fn far_starts_come_nearer() {
     let u: Vec<f32> = (0..16).map(|i| (i as f32 + 0.3) / 16.0).collect();

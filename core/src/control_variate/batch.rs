@@ -17,8 +17,8 @@ use crate::real::Real;
 /// Numbers of workspace that [`estimate`] needs for up to `n` samples.
 ///
 /// # Errors
-/// [`Error::Range`] or [`Error::Unsupported`] for a configuration that cannot be, [`Error::Range`] also for more samples
-/// than [`estimate`] takes, [`Error::Memory`] if no memory could be large enough.
+/// [`Error::Range`] or [`Error::Unsupported`] for a configuration that cannot be, [`Error::Range`] also for more
+/// samples than [`estimate`] takes, [`Error::Memory`] if no memory could be large enough.
 #[inline]
 pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error> {
     let plan = Plan::new(config, config.checked_shape()?.columns(), n)?;
