@@ -30,10 +30,10 @@ extern "C" {
 #define NF_BASIS_SINE 2 // Basis: products of half-waves sin(pi d x + pi/2).
 #define NF_BASIS_GAUSSIAN 3 // Basis: isotropic Gaussians, as many as Legendre has terms.
 
-#define NF_SOLVER_AUTO 0 // Solver: dual for fewer samples than terms, else normal equations. The default.
+#define NF_SOLVER_AUTO 0 // Solver: dual for n below the terms and no `controls`, else normal equations. The default.
 #define NF_SOLVER_NORMAL_EQUATIONS 1 // Solver: normal equations (4.27) and LDL'.
 #define NF_SOLVER_SQUARE_ROOT 2 // Solver: Givens rotations, for badly placed samples. Only with NF_CV_LEAST_SQUARES.
-#define NF_SOLVER_DUAL 3 // Solver: the n x n system of at most 4096 samples. Not for streaming.
+#define NF_SOLVER_DUAL 3 // Solver: the n x n system of at most 4096 samples. Not for streaming, nor with `controls`.
 
 #define NF_RIDGE_AUTO (-1.0f) // For `ridge`: the best of a few by leave-one-out errors; biases NF_CV_LEAVE_ONE_OUT.
 
@@ -62,12 +62,12 @@ typedef struct nf_cv_config {
     // mean, but for NF_CV_LEAST_SQUARES and NF_CV_GRADIENT_DESCENT: fits to some of the samples undo what is even
     // about all. Fits shared by pixels correct all the same.
     uint32_t stratified;
-    // If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (figure 4.15).
-    // At most 136 less binomial(dims - 1 + order, order) and less `controls`: 130 at 3 dims, order 2. Of more
-    // alternatives let each slice stand for several.
+    // If above 1, the last coordinate picks one of this many equally likely alternatives, lights say (figure 4.15): at
+    // most 136 - binomial(dims - 1 + order, order) - `controls`. Of more let each slice stand for several.
     uint32_t slices;
-    // Of two coordinates that pick a point of a light the first, counted from 1, below dims; 0: none. From 4 samples
-    // on nf_cv_image_estimate() then also follows shadows' edges in them, among values above 0 and others.
+    // Of two coordinates that pick a point of a light the first, counted from 1, below dims, with `slices` below
+    // dims - 1; 0: none. From 4 samples on image fits by NF_CV_ROBUST and NF_CV_K_FOLD, without a `ridge`, then also
+    // follow shadows' edges in them, in groups of 8 and more pixels with values above 0 and others.
     uint32_t edges;
     uint32_t controls; // User-supplied control functions with known integrals (4.18), 0 to 4.
     // Floats from one sample's u to the next; 0 means dims. A path may be longer than what is regressed (4.3.5); its
@@ -81,7 +81,7 @@ typedef struct nf_cv_config {
     // Runs of samples, in order, for NF_CV_K_FOLD (images have two) and streaming NF_CV_ROBUST: 2 to 16; 0 means 4.
     uint32_t folds;
     // Ridge strength per sample, raised to 1e-12, in float 1e-5; 0, and NF_RIDGE_AUTO of images, NF_CV_INCREMENTAL and
-    // streaming NF_CV_ROBUST: the default. Gradient descent ignores it, NF_CV_ROBUST of one integral but for controls.
+    // streaming NF_CV_K_FOLD: the default. Gradient descent, and NF_CV_ROBUST of one integral, ignore it.
     float ridge;
 } nf_cv_config;
 
@@ -90,7 +90,7 @@ typedef struct nf_cv_samples {
     // n rows of the configuration's `stride` floats, of which the first `dims` count; the last row may end after them.
     const float *u;
     const float *f; // n rows of `channels` floats.
-    size_t n; // Samples of each integral. Of several integrals or pixels, all arrays hold one after the other.
+    size_t n; // Samples of each integral; below 2^32, of an image in all. Of several, arrays hold one after the other.
     const float *controls; // n rows of `controls` floats: functions of known integral at the samples (4.18).
     const float *control_integrals; // The integrals of the `controls` functions.
     // For nf_cv_image_estimate(), n rows of `channels` finite floats: what f would be with nothing in the way, the
@@ -117,7 +117,7 @@ typedef struct nf_estimate {
 } nf_estimate;
 
 // Bytes of workspace for n samples of each integral, or fewer; never less for more. 0 where nf_check() refuses,
-// options exclude each other, the solver takes fewer samples, or no memory could be large enough.
+// options exclude each other, the solver or a library for float (2^25) takes fewer samples, or no memory is enough.
 size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
 // Estimates `integrals` integrals from `samples->n` samples of each, apart from each other: out[integrals]. Nothing of
@@ -148,7 +148,7 @@ typedef struct nf_cv_image {
     // averaged; the time of an estimate goes with the square of window / stride.
     uint32_t stride;
     // 1 if the pixels have no places: all of one surface, in all frames, share a fit. With `surfaces` at most 1024
-    // pixels.
+    // pixels. Their order must not follow a picture: shuffle them, above all for NF_CV_K_FOLD.
     uint32_t unordered;
     // A number for each pixel, or NULL: only pixels of the same number share a fit, those that show one material under
     // a similar normal, say. It must not depend on the pixel's own samples, or no estimator is unbiased.
@@ -179,9 +179,9 @@ size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image 
 //
 // NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
 // they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and a `ridge` are exactly
-// unbiased for independent samples. Groups of up to 4 pixels in one frame stay at their mean; with several samples
-// NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. Of a texture one sample in each pixel cannot tell: say it by `surfaces`
-// or `factors`. With one sample, or `stratified`, std_error is the spread of the estimates about their linear trend.
+// unbiased for independent samples. Groups of less than 3 pixels, and one more for each axis of the window, stay at
+// their mean; with several samples NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. One sample in each pixel cannot tell a
+// texture: say it by `surfaces` or `factors`. With one, or `stratified`, std_error is the spread about a linear trend.
 //
 // With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
 // to what is left of it, with order 0 between the mean and what is known; NF_CV_K_FOLD is unsupported.
@@ -205,8 +205,8 @@ typedef struct nf_cv_descent {
 
 // nf_cv_estimate() of one integral by NF_CV_GRADIENT_DESCENT, which `estimator` must be, from a start: `coefficients`
 // are `channels` rows (1 for a luminance ratio) of nf_cv_terms() - 1 floats in the values' unit, and the solution
-// afterwards. The solution of a previous frame is a good start (4.2.6). A channel whose descent diverges is its mean,
-// and its coefficients are 0.
+// afterwards. The solution of a previous frame is a good start (4.2.6). A channel whose descent ends no nearer to the
+// values than their mean is that mean; its coefficients are then 0, unless they came nearer than the start.
 //
 // Other errors as for nf_cv_estimate(); NF_ERR_RANGE also for the descent, NF_ERR_NOT_FINITE for the start,
 // NF_ERR_UNSUPPORTED for another estimator and `controls`.
@@ -228,7 +228,7 @@ nf_status nf_cv_accumulator_init(void *memory, size_t bytes, const nf_cv_config 
 
 // Adds samples of the one integral: all of them or, on an error, none. Several at a time are cheaper. In single
 // precision an accumulator holds 2^22 samples.
-// NF_ERR_RANGE also for more samples than it holds; else as for nf_cv_estimate().
+// NF_ERR_RANGE also for more samples than it holds; else as for nf_cv_estimate(), but NF_NONFINITE_SKIP may skip all.
 nf_status nf_cv_accumulator_add(nf_cv_accumulator *accumulator, const nf_cv_samples *samples);
 
 // Adds all samples of `other`, which stays as it is.

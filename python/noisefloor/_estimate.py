@@ -159,7 +159,7 @@ def image_estimate(
         raise ValueError(f"f has the shape {f.shape}: with this u it must be {u.shape[:-1] + ('c',) * values}")
     own = f.shape[u.ndim - 1 :]
     config = configure(order, estimator, "legendre", d, dims, slices, stratified, *own)
-    config.edges = _arrays.integer("edges", edges, 0, config.dims - 1)
+    config.edges = _arrays.integer("edges", edges, 0, max(0, config.dims - 1 - (config.slices > 1)))
     image = _c.Image(width=pixels[-1], height=pixels[-2], frames=pixels[0] if len(pixels) == 3 else 1)
     window = image.window = _arrays.integer("window", window, 1, 32)
     image.stride = 0 if stride is None else _arrays.integer("stride", stride, 1, window)

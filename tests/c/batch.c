@@ -116,6 +116,11 @@ static void combinations(void)
     config.controls = 0;
     CHECK(nf_cv_workspace_size(&config, 4096) > 0);
     CHECK(nf_cv_workspace_size(&config, 4097) == 0);
+    config.estimator = NF_CV_GRADIENT_DESCENT; /* which solves nothing */
+    CHECK(nf_cv_workspace_size(&config, 4097) > 0);
+#if SIZE_MAX > UINT32_MAX
+    CHECK(nf_cv_workspace_size(&config, (size_t)UINT32_MAX + 1) == 0);
+#endif
     config = make_config(2, 2, 2, NF_CV_ROBUST);
     config.color = NF_COLOR_LUMINANCE_RATIO;
     CHECK_REFUSED(estimate_one(&config, u, f, N / 2, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);

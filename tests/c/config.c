@@ -155,6 +155,7 @@ static void ranges(void)
     REFUSED(config.slices = UINT32_MAX, NF_ERR_RANGE);
     REFUSED(config.edges = config.dims, NF_ERR_RANGE);
     REFUSED(config.edges = UINT32_MAX, NF_ERR_RANGE);
+    REFUSED((config.slices = 4, config.edges = 1), NF_ERR_RANGE); /* the second picks the slice */
     REFUSED(config.controls = 5, NF_ERR_RANGE);
     REFUSED(config.controls = UINT32_MAX, NF_ERR_RANGE);
     REFUSED(config.stride = 1, NF_ERR_RANGE);

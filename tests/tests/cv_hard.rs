@@ -657,6 +657,66 @@ fn memory_of_incremental_estimates() {
     assert_eq!((estimate(len), estimate(len - 1)), (Ok(()), Err(Error::Memory)));
 }
 
+/// More samples than sums or counts hold are refused, before any is read, and so is asking for the workspace.
+#[test]
+fn too_many_samples() {
+    let config = config(1, 0, Estimator::Robust);
+    let most = 1 << 25;
+    assert!(control_variate::workspace_len::<f32>(&config, most).is_ok());
+    assert_eq!(control_variate::workspace_len::<f32>(&config, most + 1), Err(Error::Range));
+    assert!(control_variate::workspace_len::<f64>(&config, most + 1).is_ok());
+    let zeros = vec![0.0; most + 1];
+    let samples = Samples::new(&zeros, &zeros);
+    assert_eq!(control_variate::estimate::<f32>(&config, samples, &mut []), Err(Error::Range));
+    assert_eq!(control_variate::estimate::<f64>(&config, samples, &mut []), Err(Error::Memory));
+    let descent = Config { estimator: Estimator::GradientDescent, ..config };
+    assert_eq!(control_variate::gradient_descent::<f32>(&descent, samples, &mut [], &mut []), Err(Error::Range));
+    if let Ok(many) = usize::try_from(1_u64 << 32) {
+        assert_eq!(control_variate::workspace_len::<f64>(&config, many), Err(Error::Range));
+    }
+}
+
+/// The dual takes 4096 samples of what solves it, and any number of what does not.
+#[test]
+fn most_samples_of_the_dual() {
+    let (n, mut rng) = (5000, SplitMix64::new(16));
+    let u = points(n, 1, &mut rng);
+    let f = values(&u, 1, smooth);
+    for estimator in ESTIMATORS.into_iter().filter(|&estimator| estimator != Estimator::Incremental) {
+        for stratified in [false, true] {
+            let auto = Config { stratified, ..config(1, 2, estimator) };
+            let dual = Config { solver: Solver::Dual, ..auto };
+            let is_mean = stratified && estimator != Estimator::LeastSquares;
+            if is_mean || estimator == Estimator::GradientDescent {
+                assert_eq!(batch::<f64>(&dual, &u, &f), batch::<f64>(&auto, &u, &f), "{estimator:?}");
+            } else {
+                assert_eq!(control_variate::workspace_len::<f64>(&dual, n), Err(Error::Range), "{estimator:?}");
+            }
+        }
+    }
+}
+
+/// The robust estimate goes by no ridge, of control functions neither.
+#[test]
+fn robust_takes_no_ridge() {
+    // One sample alone moves the control function.
+    let u: Vec<f32> = (0..16).map(|i| (i as f32 + 0.3) / 16.0).collect();
+    let h: Vec<f32> = u.iter().map(|u| if *u < 0.06 { 1.0 } else { 0.0 }).collect();
+    let f: Vec<f32> = u.iter().zip(&h).map(|(u, h)| 1.0 + u * u + 1000.0 * h).collect();
+    let samples = Samples { u: &u, f: &f, controls: &h, control_integrals: &[0.06] };
+    let config = Config { controls: 1, ..config(1, 1, Estimator::Robust) };
+    for ridge in [Ridge::Auto, Ridge::Fixed(1e-9), Ridge::Fixed(1.0), Ridge::Fixed(1e3), Ridge::Fixed(1e8)] {
+        let other = Config { ridge, ..config };
+        assert_eq!(batch_of::<f64>(&other, samples), batch_of::<f64>(&config, samples), "{ridge:?}");
+        let streamed = [config, other].map(|config| {
+            let mut accumulator = accumulator::<f64>(&config);
+            accumulator.add(samples).unwrap();
+            finish(&accumulator).unwrap()
+        });
+        assert_eq!(streamed[0], streamed[1], "{ridge:?}");
+    }
+}
+
 /// Steps far too long, of any rule, end at a finite estimate.
 #[test]
 fn divergent_descent() {

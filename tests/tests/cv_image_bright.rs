@@ -46,6 +46,28 @@ fn check(what: &str, ratio: Ratio, limit: f64) {
     assert!(ratio.upper() < limit, "{what}: {ratio:?}, not below {limit}");
 }
 
+/// Whether a pixel's own value keeps it out of fits changes nothing of its correction, by halves that choose for each
+/// other: where another pixel of its half is bright, it is corrected alike as one of the others and as a bright one.
+#[test]
+fn a_pixel_out_of_fits_is_corrected_alike() {
+    for config in [Config::new(1, 3, 1), Config { slices: 33, ..Config::new(2, 1, 1) }] {
+        let config = Config { estimator: Estimator::KFold, ..config };
+        let (pixels, dims) = (60, config.dims);
+        let u = points(pixels, dims, &mut SplitMix64::new(18));
+        let mut f: Vec<f32> = u.chunks(dims).map(|u| (6.0 * u[0]).sin() + u[dims - 1]).collect();
+        f[6] = 100.0;
+        let correction = |own: f32| {
+            let mut f = f.clone();
+            f[5] = own;
+            let estimates = image(&config, &Image::unordered(pixels), Samples::new(&u, &f)).unwrap();
+            estimates[5].mean[0] - own
+        };
+        let [inside, outside] = [0.5, 64.0].map(correction);
+        println!("{inside} {outside}");
+        assert!(inside.abs() > 0.05 && (inside - outside).abs() < 2e-5, "{inside} {outside}");
+    }
+}
+
 /// One of 64 pixels has so much more light than the others, whose values are alike: in a block, and in overlapping
 /// windows. Fits that had seen it left the others 2.6 times the error of the mean at 1 sample and a light of 1000, 3.4
 /// times at 4.

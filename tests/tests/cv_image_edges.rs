@@ -11,6 +11,7 @@ use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::image;
 use noisefloor_tests::statistics::Moments;
 use std::f64::consts::PI;
+use std::ffi::CStr;
 
 const Z_LIMIT: f64 = 4.75;
 const SIDE: usize = 8;
@@ -227,12 +228,17 @@ fn units_do_not_matter() {
 
 #[test]
 fn coordinates_must_be_there() {
-    let u = [0.5; 8];
-    for (dims, edges) in [(1, 1), (2, 2), (2, usize::MAX)] {
-        let config = Config { edges, ..Config::new(dims, 1, 1) };
+    const EDGES: &CStr = c"edges must be 0, or at least 1 and below dims, with slices below dims - 1";
+    let u = [0.5; 12];
+    // With slices the last coordinate is no place.
+    for (dims, edges, slices) in [(1, 1, 0), (2, 2, 0), (2, usize::MAX, 0), (2, 1, 2), (3, 2, 4), (3, usize::MAX, 4)] {
+        let config = Config { edges, slices, ..Config::new(dims, 1, 1) };
         assert_eq!(image_workspace_len(&config, &Image::new(SIDE, SIDE), 4), Err(Error::Range));
-        assert_eq!(config.check().unwrap_err().1, c"edges must be 0, or at least 1 and below dims");
+        assert_eq!(config.check().unwrap_err().1, EDGES);
         assert!(image(&config, &Image::new(1, 1), Samples::new(&u[..4 * dims], &u[..4])).is_err());
+    }
+    for (edges, slices) in [(2, 1), (1, 4)] {
+        assert_eq!(Config { edges, slices, ..Config::new(3, 1, 1) }.check(), Ok(()));
     }
 }
 

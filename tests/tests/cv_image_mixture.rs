@@ -320,11 +320,13 @@ impl Case {
             let rows = rows.iter().map(|row: &Vec<f64>| row[..end].to_vec()).collect();
             let whole = Design { rows, weights: weights[..end].to_vec() };
             // One sample is left out alone, several with all of their pixel's colour.
-            let fit_to = |is_used: &dyn Fn(usize) -> bool, spare: usize| {
+            let fit_to = |is_used: &dyn Fn(usize) -> bool| {
                 let used: Vec<usize> = (0..group.len()).filter(|&index| is_used(index) && !far[index]).collect();
                 let others: Vec<usize> = used.iter().flat_map(|index| index * n..(index + 1) * n).collect();
                 let f: Vec<f64> = others.iter().map(|&sample| values[sample]).collect();
-                let strength = rule.ridge * (others.len() - spare.min(others.len())) as f64;
+                // Whatever values the pixels have, as far as these may not say which are in the fit.
+                let count = if n == 1 { group.len() - 1 } else { others.len() };
+                let strength = rule.ridge * count as f64;
                 let rows = whole.select(&others);
                 let mut fit = if n == 1 {
                     Regression::fit(&rows, &f, strength)
@@ -342,13 +344,13 @@ impl Case {
             };
             let by_colour: Vec<Regression> = match n {
                 1 => vec![],
-                _ => (0..4).map(|colour| fit_to(&|index| group[index].colour != colour, 0)).collect(),
+                _ => (0..4).map(|colour| fit_to(&|index| group[index].colour != colour)).collect(),
             };
             let mut left = [0.0; 4];
             let mut each = vec![];
             for (index, member) in group.iter().enumerate() {
                 // A pixel that is in no fit leaves none.
-                let alone = (n == 1).then(|| fit_to(&|other| other != index, usize::from(far[index])));
+                let alone = (n == 1).then(|| fit_to(&|other| other != index));
                 let fit = alone.as_ref().unwrap_or_else(|| &by_colour[member.colour]);
                 let residuals: Vec<f64> = (index * n..(index + 1) * n)
                     .map(|sample| values[sample] - fit.control(&whole.rows[sample]))
@@ -474,7 +476,8 @@ impl Case {
                 sums.std_errors[channel] = if self.n > 1 {
                     // More where the pixel's own samples make its correction unlikely.
                     let variance = squares / (count * (count - 1.0));
-                    (spread * spread * variance + (correction * correction - 4.0 * variance).max(0.0)).sqrt()
+                    let likely = if self.n == 2 { 195.1 } else { 4.0 + 10.3 / (count - 2.5) };
+                    (spread * spread * variance + (correction * correction - likely * variance).max(0.0)).sqrt()
                 } else {
                     spread
                 };

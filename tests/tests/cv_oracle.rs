@@ -10,7 +10,7 @@ use noisefloor::control_variate::{
     self, Color, Config, Estimate, Estimator, NonFinite, Optimizer, Regressor, Ridge, Samples, Solver,
 };
 use noisefloor_tests::ESTIMATORS;
-use noisefloor_tests::oracle::{self, Regression, RobustRule};
+use noisefloor_tests::oracle::{self, Design, Regression, RobustRule};
 use noisefloor_tests::random::SplitMix64;
 
 /// Samples with a smooth function and some noise.
@@ -457,36 +457,88 @@ fn gradient_descent_converges() {
     }
 }
 
-/// The oracle's plain descent, step by step: columns of degree k scaled by 2^(1 - k) are the oracle's on a scaled
-/// design.
+/// The oracle's descent, step by step, by each rule with the documented constants and with others: columns of degree k
+/// scaled by 2^(1 - k) are the oracle's on a scaled design. With 0 iterations there are as many as documented.
 #[test]
 fn gradient_descent_takes_the_documented_steps() {
-    let (u, f) = noisy(50, 2, 1150);
-    let mut scaled = design(&config(2, 2, Estimator::Robust), &wide(&u));
-    scaled.rows.iter_mut().for_each(|row| row[2..].iter_mut().for_each(|value| *value *= 0.5));
-    // The largest curvature by 2000 rounds of power iteration; the library takes 12 rounds, hence 1e-3 below.
-    let means = scaled.means();
-    let mut vector = vec![1.0; 5];
+    let cases = [
+        (50, Optimizer::Plain, 0.0, 0.0, &[1, 2, 5, 20][..]),
+        (50, Optimizer::Plain, 0.4, 0.9, &[2, 5]),
+        (50, Optimizer::Momentum, 0.0, 0.0, &[2, 3, 5]),
+        (50, Optimizer::Momentum, 0.3, 0.8, &[2, 3, 5]),
+        (50, Optimizer::Adam, 0.0, 0.0, &[1, 2, 5, 20]),
+        (50, Optimizer::Adam, 0.2, 0.6, &[1, 2, 5, 20]),
+        (10, Optimizer::Plain, 0.03, 0.0, &[0]),
+        (50, Optimizer::Plain, 0.03, 0.0, &[0]),
+        (300, Optimizer::Plain, 0.01, 0.0, &[0]),
+    ];
+    for (n, optimizer, learning_rate, momentum, all_steps) in cases {
+        let (u, f) = noisy(n, 2, 1150);
+        let mut scaled = design(&config(2, 2, Estimator::Robust), &wide(&u));
+        scaled.rows.iter_mut().for_each(|row| row[2..].iter_mut().for_each(|value| *value *= 0.5));
+        let or = |value: f32, default: f64| if value > 0.0 { f64::from(value) } else { default };
+        let mean = wide(&f).iter().sum::<f64>() / n as f64;
+        let deviation = (wide(&f).iter().map(|f| (f - mean).powi(2)).sum::<f64>() / n as f64).sqrt();
+        let rate = match optimizer {
+            Optimizer::Adam => or(learning_rate, 0.05) * deviation,
+            Optimizer::Momentum | Optimizer::Plain => or(learning_rate, 1.0) / largest_curvature(&scaled),
+        };
+        let kept = match optimizer {
+            Optimizer::Momentum => or(momentum, 0.5),
+            Optimizer::Adam => or(momentum, 0.9),
+            Optimizer::Plain => 0.0,
+        };
+        let expected = |steps: usize| {
+            let (mut first, mut second, mut times) = ([0.0; 5], [0.0; 5], [0; 5]);
+            let step = |j: usize, g: f64| {
+                times[j] += 1;
+                if optimizer != Optimizer::Adam {
+                    first[j] = kept * first[j] + rate * g;
+                    return first[j];
+                }
+                first[j] = kept * first[j] + (1.0 - kept) * g;
+                second[j] = 0.999 * second[j] + 0.001 * g * g;
+                let unbiased = second[j] / (1.0 - 0.999_f64.powi(times[j]));
+                rate * first[j] / (1.0 - kept.powi(times[j])) / unbiased.sqrt()
+            };
+            oracle::gradient_descent(&scaled, &wide(&f), &[0.0; 5], steps, step).intercept
+        };
+        // The largest curvature takes the library 12 rounds of power iteration.
+        let tolerance = match (optimizer, learning_rate > 0.1 || learning_rate == 0.0) {
+            (Optimizer::Adam, _) => 1e-5,
+            (_, true) => 1e-3,
+            (_, false) => 1e-4,
+        };
+        for &iterations in all_steps {
+            let base = config(2, 2, Estimator::GradientDescent);
+            let config = Config { optimizer, iterations, learning_rate, momentum, ..base };
+            let steps = if iterations == 0 { (n / 2).clamp(8, 128) } else { iterations };
+            let what = format!("{n} samples, {optimizer:?}, {learning_rate}, {momentum}, {steps} steps");
+            close(&batch::<f64>(&config, &u, &f).unwrap(), expected(steps), &f, tolerance, &what);
+            let fewer = if iterations == 0 { steps - steps / 8 } else { steps - 1 };
+            let shows = (expected(steps) - expected(fewer)).abs() / largest(&f);
+            println!("{what}: a step shows by {shows:.1e}");
+            assert!(shows > tolerance || steps == 20, "{what}");
+        }
+    }
+}
+
+/// Of the centred columns of a design, by 2000 rounds of power iteration.
+fn largest_curvature(design: &Design) -> f64 {
+    let means = design.means();
+    let mut vector = vec![1.0; means.len()];
     let mut curvature = 0.0;
     for _ in 0..2000 {
-        let mut image = [0.0; 5];
-        for row in &scaled.rows {
+        let mut image = vec![0.0; means.len()];
+        for row in &design.rows {
             let centred: Vec<f64> = row.iter().zip(&means).map(|(p, m)| p - m).collect();
             let product: f64 = centred.iter().zip(&vector).map(|(p, v)| p * v).sum();
-            image.iter_mut().zip(&centred).for_each(|(out, p)| *out += product * p / 50.0);
+            image.iter_mut().zip(&centred).for_each(|(out, p)| *out += product * p / design.rows.len() as f64);
         }
         curvature = image.iter().map(|x| x * x).sum::<f64>().sqrt();
         vector = image.iter().map(|x| x / curvature).collect();
     }
-    let mut previous = f64::NAN;
-    for iterations in [1, 2, 5, 20] {
-        let expected = oracle::gradient_descent(&scaled, &wide(&f), &[0.0; 5], 1.0 / curvature, iterations).intercept;
-        let base = config(2, 2, Estimator::GradientDescent);
-        let config = Config { optimizer: Optimizer::Plain, iterations, ..base };
-        close(&batch::<f64>(&config, &u, &f).unwrap(), expected, &f, 1e-3, &format!("{iterations} steps"));
-        assert!((expected - previous).abs() > 1e-3 || iterations == 1 || iterations == 20, "steps show");
-        previous = expected;
-    }
+    curvature
 }
 
 /// A start from the last frame's solution ends nearer to the new frame's least squares than one from zero does.
@@ -511,6 +563,29 @@ fn warm_start_beats_cold() {
     let mut zero = vec![0.0; columns];
     let started = control_variate::gradient_descent(&config, Samples::new(&u, &f), &mut zero, &mut workspace).unwrap();
     assert_eq!(started, batch::<f64>(&config, &u, &f).unwrap());
+}
+
+/// A start far from the solution, of which few short steps leave the values farther than the mean is, gives the mean
+/// and is not lost: frame after frame ends where least squares is. What diverges is.
+#[test]
+fn far_starts_come_nearer() {
+    let u: Vec<f32> = (0..16).map(|i| (i as f32 + 0.3) / 16.0).collect();
+    let base = config(1, 1, Estimator::GradientDescent);
+    let plain = batch::<f64>(&Config { order: 0, ..base }, &u, &u).unwrap();
+    let config = Config { optimizer: Optimizer::Plain, learning_rate: 0.01, iterations: 64, ..base };
+    let mut workspace = workspace::<f64>(&config, 16);
+    let mut slope = [100.0];
+    let mut frame = |config: &Config, slope: &mut [f32]| {
+        control_variate::gradient_descent(config, Samples::new(&u, &u), slope, &mut workspace).unwrap()
+    };
+    assert_eq!(frame(&config, &mut slope), plain);
+    assert!(slope[0] > 40.0 && slope[0] < 60.0, "{slope:?}");
+    for _ in 0..40 {
+        frame(&config, &mut slope);
+    }
+    assert!((slope[0] - (1.0_f32 / 12.0).sqrt()).abs() < 1e-4, "{slope:?}");
+    let mut slope = [100.0];
+    assert_eq!((frame(&Config { learning_rate: 3.0, ..config }, &mut slope), slope), (plain, [0.0]));
 }
 
 /// (4.30) by a loop that keeps all samples: fits of total ridge .1 and 1 to the samples before, mixed by their errors

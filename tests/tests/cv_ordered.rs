@@ -35,6 +35,15 @@ fn declared_is_the_mean() {
                         assert!(n > 16 || estimator != Estimator::Robust || streamed == mean, "{streamed:?} {mean:?}");
                     }
                 }
+                // What fits to all samples alike fits all the same.
+                for estimator in [Estimator::LeastSquares, Estimator::GradientDescent] {
+                    let config = config(integrand.dims, limited(integrand.dims, 2), estimator);
+                    let declared = Config { stratified: true, ..config };
+                    let found = [config, declared].map(|config| batch::<f64>(&config, &u, &f).unwrap());
+                    assert_eq!(found[0], found[1], "{estimator:?} {n}");
+                    let plain = batch::<f64>(&Config { order: 0, ..config }, &u, &f).unwrap();
+                    assert!(found[0] != plain, "{estimator:?} {n}");
+                }
             }
         }
     }

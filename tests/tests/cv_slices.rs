@@ -163,8 +163,13 @@ fn most_slices() {
         }
     }
     // Control functions take a term each.
-    let controlled = |slices| Config { slices, controls: 1, ..Config::new(3, 2, 1) }.terms();
-    assert_eq!((controlled(129), controlled(130)), (Ok(136), Err(Error::Range)));
+    let controlled = |slices, controls| Config { slices, controls, ..Config::new(3, 2, 1) }.terms();
+    assert_eq!((controlled(129, 1), controlled(130, 1)), (Ok(136), Err(Error::Range)));
+    // 43 slices have functions of their own beside one of them: more take these functions' room.
+    assert_eq!([0, 1, 2, 4].map(|controls| controlled(43, controls)), [135, 136, 51, 53].map(Ok));
+    for (controls, slices) in (0..=4).flat_map(|controls| (0..=130 - controls).map(move |slices| (controls, slices))) {
+        assert!(controlled(slices, controls).is_ok(), "{slices} slices, {controls} control functions");
+    }
     // Of order 0 nothing is regressed.
     assert_eq!(terms(3, 0, 135), Ok(1));
 }

@@ -29,13 +29,13 @@ pub const NF_BASIS_SINE: u32 = 2;
 /// Basis: isotropic Gaussians, as many as Legendre has terms.
 pub const NF_BASIS_GAUSSIAN: u32 = 3;
 
-/// Solver: dual for fewer samples than terms, else normal equations. The default.
+/// Solver: dual for n below the terms and no `controls`, else normal equations. The default.
 pub const NF_SOLVER_AUTO: u32 = 0;
 /// Solver: normal equations (4.27) and LDL'.
 pub const NF_SOLVER_NORMAL_EQUATIONS: u32 = 1;
 /// Solver: Givens rotations, for badly placed samples. Only with NF_CV_LEAST_SQUARES.
 pub const NF_SOLVER_SQUARE_ROOT: u32 = 2;
-/// Solver: the n x n system of at most 4096 samples. Not for streaming.
+/// Solver: the n x n system of at most 4096 samples. Not for streaming, nor with `controls`.
 pub const NF_SOLVER_DUAL: u32 = 3;
 
 /// Precision: double. The default; NF_ERR_UNSUPPORTED where the library was built for float alone.
@@ -77,12 +77,12 @@ pub struct nf_cv_config {
     /// mean, but for NF_CV_LEAST_SQUARES and NF_CV_GRADIENT_DESCENT: fits to some of the samples undo what is even
     /// about all. Fits shared by pixels correct all the same.
     pub stratified: u32,
-    /// If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (figure 4.15).
-    /// At most 136 less binomial(dims - 1 + order, order) and less `controls`: 130 at 3 dims, order 2. Of more
-    /// alternatives let each slice stand for several.
+    /// If above 1, the last coordinate picks one of this many equally likely alternatives, lights say (figure 4.15): at
+    /// most 136 - binomial(dims - 1 + order, order) - `controls`. Of more let each slice stand for several.
     pub slices: u32,
-    /// Of two coordinates that pick a point of a light the first, counted from 1, below dims; 0: none. From 4 samples
-    /// on nf_cv_image_estimate() then also follows shadows' edges in them, among values above 0 and others.
+    /// Of two coordinates that pick a point of a light the first, counted from 1, below dims, with `slices` below
+    /// dims - 1; 0: none. From 4 samples on image fits by NF_CV_ROBUST and NF_CV_K_FOLD, without a `ridge`, then also
+    /// follow shadows' edges in them, in groups of 8 and more pixels with values above 0 and others.
     pub edges: u32,
     /// User-supplied control functions with known integrals (4.18), 0 to 4.
     pub controls: u32,
@@ -100,7 +100,7 @@ pub struct nf_cv_config {
     /// Runs of samples, in order, for NF_CV_K_FOLD (images have two) and streaming NF_CV_ROBUST: 2 to 16; 0 means 4.
     pub folds: u32,
     /// Ridge strength per sample, raised to 1e-12, in float 1e-5; 0, and NF_RIDGE_AUTO of images, NF_CV_INCREMENTAL and
-    /// streaming NF_CV_ROBUST: the default. Gradient descent ignores it, NF_CV_ROBUST of one integral but for controls.
+    /// streaming NF_CV_K_FOLD: the default. Gradient descent, and NF_CV_ROBUST of one integral, ignore it.
     pub ridge: f32,
 }
 

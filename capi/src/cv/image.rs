@@ -26,7 +26,7 @@ pub struct nf_cv_image {
     /// averaged; the time of an estimate goes with the square of window / stride.
     pub stride: u32,
     /// 1 if the pixels have no places: all of one surface, in all frames, share a fit. With `surfaces` at most 1024
-    /// pixels.
+    /// pixels. Their order must not follow a picture: shuffle them, above all for NF_CV_K_FOLD.
     pub unordered: u32,
     /// A number for each pixel, or NULL: only pixels of the same number share a fit, those that show one material under
     /// a similar normal, say. It must not depend on the pixel's own samples, or no estimator is unbiased.
@@ -97,9 +97,9 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
 ///
 /// NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
 /// they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and a `ridge` are exactly
-/// unbiased for independent samples. Groups of up to 4 pixels in one frame stay at their mean; with several samples
-/// NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. Of a texture one sample in each pixel cannot tell: say it by `surfaces`
-/// or `factors`. With one sample, or `stratified`, std_error is the spread of the estimates about their linear trend.
+/// unbiased for independent samples. Groups of less than 3 pixels, and one more for each axis of the window, stay at
+/// their mean; with several samples NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. One sample in each pixel cannot tell a
+/// texture: say it by `surfaces` or `factors`. With one, or `stratified`, std_error is the spread about a linear trend.
 ///
 /// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
 /// to what is left of it, with order 0 between the mean and what is known; NF_CV_K_FOLD is unsupported.

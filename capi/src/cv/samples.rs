@@ -13,7 +13,7 @@ pub struct nf_cv_samples {
     pub u: *const f32,
     /// n rows of `channels` floats.
     pub f: *const f32,
-    /// Samples of each integral. Of several integrals or pixels, all arrays hold one after the other.
+    /// Samples of each integral; below 2^32, of an image in all. Of several, arrays hold one after the other.
     pub n: usize,
     /// n rows of `controls` floats: functions of known integral at the samples (4.18).
     pub controls: *const f32,

@@ -54,7 +54,7 @@ impl Basis {
     /// [`Error::Range`] if a number is out of range or the terms, constant included, would exceed [`MAX_TERMS`].
     pub fn new(family: Family, dims: usize, order: usize, slices: usize) -> Result<Self, Error> {
         let mut basis = Self::empty();
-        basis.set(family, Shape::new(dims, order, slices)?);
+        basis.set(family, Shape::new(dims, order, slices, MAX_TERMS)?);
         Ok(basis)
     }
 

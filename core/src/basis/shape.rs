@@ -26,20 +26,22 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
+    /// Of at most `room` terms, constant included.
+    ///
     /// # Errors
     /// As for [`Basis::new`](super::Basis::new).
-    pub(crate) fn new(dims: usize, order: usize, slices: usize) -> Result<Self, Error> {
+    pub(crate) fn new(dims: usize, order: usize, slices: usize, room: usize) -> Result<Self, Error> {
         if dims == 0 || dims > MAX_DIMS || order > MAX_ORDER || slices >= MAX_TERMS {
             return Err(Error::Range);
         }
         let slices = if slices > 1 && order > 0 { slices } else { 0 };
         let continuous = if slices > 0 { dims - 1 } else { dims };
         let shared = count(continuous, order);
-        if 1 + shared + slices > MAX_TERMS {
+        if 1 + shared + slices > room {
             return Err(Error::Range);
         }
         // As many whole degrees of per-slice copies as fit.
-        let fits = |&copies: &usize| 1 + shared + slices + slices * copies <= MAX_TERMS;
+        let fits = |&copies: &usize| 1 + shared + slices + slices * copies <= room;
         let degrees = 0..=if slices > 0 { order } else { 0 };
         let copies = degrees.map(|degree| count(continuous, degree)).filter(fits).fold(0, usize::max);
         Ok(Self { continuous, order, slices, shared, copies, is_apart: false })

@@ -166,14 +166,14 @@ impl<R: Real> Accumulator<R> {
     /// Adds samples, all or, on an error, none.
     ///
     /// # Errors
-    /// As for [`estimate`](super::estimate); adding no samples is an error too, and in `f32` more than 2^22 of them.
+    /// As for [`estimate`](super::estimate), but that all samples may be skipped; in `f32` more than 2^22 in all are
+    /// [`Error::Range`].
     pub fn add(&mut self, sums: &mut [R], samples: Samples<'_>) -> Result<(), Error> {
         let sums = self.used_mut(sums)?;
         let reader = Reader::new(&self.config, samples)?;
         reader.check()?;
         self.check_capacity(reader.len() as u64)?;
-        let mut basis = Basis::empty();
-        basis.set(self.config.basis, self.shape);
+        let basis = self.basis();
         let terms = self.layout.terms();
         let mut p = [[R::ZERO]; MAX_TERMS];
         p[0] = [R::ONE];

@@ -7,7 +7,7 @@ use super::fit::descent;
 use super::fitter;
 use super::k_fold;
 use super::plan::{Method, Plan};
-use super::result::{self, Outcome, Summary};
+use super::result::{Outcome, Summary};
 use super::samples::{Reader, Samples, Subset};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -17,11 +17,12 @@ use crate::real::Real;
 /// Numbers of workspace that [`estimate`] needs for up to `n` samples.
 ///
 /// # Errors
-/// [`Error::Range`] or [`Error::Unsupported`] for a configuration that cannot be, [`Error::Memory`] if no memory could
-/// be large enough.
+/// [`Error::Range`] or [`Error::Unsupported`] for a configuration that cannot be, [`Error::Range`] also for more
+/// samples than [`estimate`] takes, [`Error::Memory`] if no memory could be large enough.
 #[inline]
 pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error> {
     let plan = Plan::new(config, config.checked_shape()?.columns(), n)?;
+    design::check_count::<R>(n)?;
     match plan.method {
         Method::Incremental | Method::SquareRoot => {
             Accumulator::<R>::new(config).map(|stream| stream.len() + stream.needed())
@@ -48,7 +49,8 @@ fn size(config: &Config, plan: &Plan, n: usize) -> Option<usize> {
 /// matter and must not be relied on.
 ///
 /// # Errors
-/// - [`Error::Range`]: a field of `config`, a coordinate outside [0, 1], or array lengths that do not belong together.
+/// - [`Error::Range`]: a field of `config`, a coordinate outside [0, 1], array lengths that do not belong together, or
+///   more samples than `u32::MAX`, in `f32` 2^25 (2^22 where they are [added one by one](Accumulator::add)).
 /// - [`Error::NotFinite`]: a NaN or infinity among the samples, unless `config` says to skip them.
 /// - [`Error::NoSamples`]: no samples, or none left.
 /// - [`Error::Memory`]: `workspace` is shorter than [`workspace_len`] says.
@@ -88,9 +90,11 @@ pub fn estimate_inlined<R: Real>(
     basis.set(config.basis, shape);
     let reader = Reader::new(config, samples)?;
     let plan = Plan::new(config, shape.columns(), reader.len())?;
+    design::check_count::<R>(reader.len())?;
     reader.check()?;
     let mut arena = Arena::new(workspace, size(config, &plan, reader.len()))?;
     let design = Design::load(&reader, &basis, plan.columns, Subset::All, true, &mut arena).ok_or(Error::NoSamples)?;
+    let summary = Summary::of(&design, &reader);
     let outcome = match plan.method {
         _ if design.n == 1 => Outcome::default(),
         Method::Robust | Method::LeaveOneOut | Method::LeastSquares => {
@@ -99,12 +103,12 @@ pub fn estimate_inlined<R: Real>(
         Method::KFold => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
         Method::Descent => {
             let coefficients = arena.zeros(design.columns * design.channels);
-            descent::descend(&design, config, &basis, coefficients, result::plain_variance(&design), &mut arena)
+            descent::descend(&design, config, &basis, coefficients, summary.variance, &mut arena)
         }
         // What streams went its own way above.
         Method::Plain | Method::Incremental | Method::SquareRoot => Outcome::default(),
     };
-    Ok(Summary::of(&design, &reader).finish(outcome))
+    Ok(summary.finish(outcome))
 }
 
 /// (4.30) is about a stream, and Givens rotations take one row at a time: their batch form streams.

@@ -31,14 +31,14 @@ pub enum Estimator {
 /// How a least-squares system is solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Solver {
-    /// The dual where there are fewer samples than terms, normal equations otherwise.
+    /// The dual where there are fewer samples than terms and no control functions, normal equations otherwise.
     #[default]
     Auto,
     /// Normal equations (4.27) and L D L'.
     NormalEquations,
     /// Givens rotations row by row: twice the digits on badly placed samples, about twice the time.
     SquareRoot,
-    /// The n x n system of the samples.
+    /// The n x n system of the samples; not with control functions.
     Dual,
 }
 
@@ -119,9 +119,10 @@ pub struct Config {
     /// term: at most 136 less binomial(dims - 1 + order, order), the terms of the other coordinates, less `controls`.
     /// That is 130 at 3 dims and order 2, of which up to 43 have functions of their own as well.
     pub slices: usize,
-    /// Of two coordinates that pick a point of a light the first, counted from 1, below `dims`; 0 for none. With 4 and
-    /// more samples in each pixel [`Estimator::Robust`] and [`Estimator::KFold`] then fit to images also a shadow's
-    /// edge in the two, in groups of pixels with lit (above 0) and dark samples. Nothing else uses it.
+    /// Of two coordinates that pick a point of a light the first, counted from 1, below `dims`, with `slices` below
+    /// `dims` - 1; 0 for none. With 4 and more samples in each pixel [`Estimator::Robust`] and [`Estimator::KFold`],
+    /// without a fixed ridge, then fit to images also a shadow's edge in the two, in groups of 8 and more pixels with
+    /// lit (above 0) and dark samples. Nothing else uses it.
     pub edges: usize,
     /// User-supplied control functions with known integrals (4.18), 0 to 4.
     pub controls: usize,
@@ -191,7 +192,9 @@ impl Config {
         rule((1..=MAX_DIMS).contains(&self.dims), c"dims must be 1 to 16")?;
         rule(self.order <= MAX_ORDER, c"order must be 0 to 7")?;
         rule((1..=Self::MAX_CHANNELS).contains(&self.channels), c"channels must be 1 to 4")?;
-        rule(self.edges == 0 || self.edges < self.dims, c"edges must be 0, or at least 1 and below dims")?;
+        let end = self.dims - usize::from(self.slices > 1);
+        let edges = c"edges must be 0, or at least 1 and below dims, with slices below dims - 1";
+        rule(self.edges == 0 || self.edges < end, edges)?;
         rule(self.controls <= Self::MAX_CONTROLS, c"controls must be 0 to 4")?;
         rule(self.stride == 0 || self.stride >= self.dims, c"stride must be 0 or at least dims")?;
         rule(self.folds != 1 && self.folds <= Self::MAX_FOLDS, c"folds must be 0, or 2 to 16")?;
@@ -208,9 +211,7 @@ impl Config {
             return Err((Error::Unsupported, c"color must not be the luminance ratio but for 3 channels"));
         }
         let terms = c"dims, order, slices and controls make more than 136 terms: lower one of them";
-        let shape = Shape::new(self.dims, self.order, self.slices).map_err(|error| (error, terms))?;
-        rule(1 + self.controls + shape.columns() <= MAX_TERMS, terms)?;
-        Ok(shape)
+        Shape::new(self.dims, self.order, self.slices, MAX_TERMS - self.controls).map_err(|error| (error, terms))
     }
 
     /// Numbers from one sample's coordinates to the next.

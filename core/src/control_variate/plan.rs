@@ -94,13 +94,15 @@ impl Plan {
     pub(crate) fn new(config: &Config, functions: usize, n: usize) -> Result<Self, Error> {
         let columns = config.controls + functions;
         let is_factored = config.estimator == Estimator::LeastSquares && config.ridge != Ridge::Auto;
+        let method = Method::of(config, columns);
+        let solves = !matches!(method, Method::Plain | Method::Descent);
         match config.solver {
             Solver::Dual if config.controls > 0 => return Err(Error::Unsupported),
-            Solver::Dual if n > MAX_DUAL => return Err(Error::Range),
+            Solver::Dual if n > MAX_DUAL && solves => return Err(Error::Range),
             Solver::SquareRoot if !is_factored => return Err(Error::Unsupported),
             _ => {}
         }
-        let (method, dual) = (Method::of(config, columns), n <= most_dual(config, columns));
+        let dual = n <= most_dual(config, columns);
         Ok(Self { method, columns: if method == Method::Plain { 0 } else { columns }, dual })
     }
 }

@@ -19,12 +19,6 @@ pub(crate) struct Outcome<R> {
     pub(crate) variance: Option<PerChannel<R>>,
 }
 
-/// The variance of the plain mean, None for one sample.
-pub(crate) fn plain_variance<R: Real>(design: &Design<'_, R>) -> Option<PerChannel<R>> {
-    let factor = R::ONE / mean_divisor(R::from_usize(design.n));
-    (design.n > 1).then_some(design.squares() * factor)
-}
-
 /// What a sum of squared deviations of `n` values is divided by to be the variance of their mean; for one, which has
 /// none, still no zero.
 pub(crate) fn mean_divisor<R: Real>(n: R) -> R {
@@ -76,12 +70,13 @@ pub(crate) struct Summary<R> {
 
 impl<R: Real> Summary<R> {
     pub(crate) fn of(design: &Design<'_, R>, reader: &Reader<'_>) -> Self {
+        let factor = R::ONE / mean_divisor(R::from_usize(design.n));
         Self {
             samples: design.n as u64,
             channels: design.channels,
             units: design.units,
             mean: PerChannel::default(),
-            variance: plain_variance(design),
+            variance: (design.n > 1).then_some(design.squares() * factor),
             colour: reader.mean_colour(),
         }
     }

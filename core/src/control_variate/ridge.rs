@@ -25,7 +25,7 @@ const SMALLEST: [f64; 2] = [1e-12, 1e-5];
 /// How much stronger control functions are held where a fit is judged by what it says of samples left out: with less,
 /// the leverage of a sample that alone moves one would be lost in rounding.
 pub(crate) fn control_factor<R: Real>(config: &Config) -> R {
-    let strength = strength::<R>(config.ridge, MIXED[0]);
+    let strength = strength::<R>(given(config), MIXED[0]);
     let least = if config.estimator == Estimator::LeastSquares { 0.0 } else { SMALLEST[usize::from(R::NARROW)] };
     R::from_f64((least / (strength.min(1.0) * CONTROL_PENALTY)).max(1.0))
 }
@@ -36,6 +36,11 @@ pub(crate) fn strength<R: Real>(ridge: Ridge, otherwise: f64) -> f64 {
         Ridge::Fixed(strength) => f64::from(strength).max(SMALLEST[usize::from(R::NARROW)]),
         Ridge::Default | Ridge::Auto => otherwise,
     }
+}
+
+/// The ridge that one integral's fits go by: the robust estimator's strengths are [`MIXED`], whatever is given.
+fn given(config: &Config) -> Ridge {
+    if config.estimator == Estimator::Robust { Ridge::Default } else { config.ridge }
 }
 
 /// The strength where there is one fit.
@@ -51,7 +56,7 @@ pub(crate) fn least_squares<R: Real>(ridge: Ridge) -> f64 {
 /// Relative penalties of control functions and basis, where `mean_square` is that of a control function's column.
 pub(crate) fn penalties<R: Real>(config: &Config, basis: &Basis, mean_square: impl Fn(usize) -> R, out: &mut [R]) {
     let (controls, functions) = halves_mut(out, config.controls);
-    let relative = CONTROL_PENALTY / strength::<R>(config.ridge, 1.0).max(1.0);
+    let relative = CONTROL_PENALTY / strength::<R>(given(config), 1.0).max(1.0);
     for (j, penalty) in controls.iter_mut().enumerate() {
         *penalty = R::from_f64(relative) * mean_square(j);
     }

@@ -182,9 +182,15 @@ fn solve_centred(design: &Design, means: &[f64], v: &[f64], ridge: f64) -> Vec<f
     least_squares(&a, &b)
 }
 
-/// Algorithm 2 with plain full-batch steps: `iterations` times slopes -= rate * gradient of eq. 4.12 / 2 (eq. 4.29),
-/// the constant being fitted exactly (its columns are centred). From `start`.
-pub fn gradient_descent(design: &Design, f: &[f64], start: &[f64], rate: f64, iterations: usize) -> Regression {
+/// Algorithm 2 with full-batch steps: `iterations` times slopes += `step` of the slope's number and its negative
+/// gradient of eq. 4.12 / 2 (eq. 4.29), the constant being fitted exactly (its columns are centred). From `start`.
+pub fn gradient_descent(
+    design: &Design,
+    f: &[f64],
+    start: &[f64],
+    iterations: usize,
+    mut step: impl FnMut(usize, f64) -> f64,
+) -> Regression {
     let n = f.len() as f64;
     let means = design.means();
     let mean_f = f.iter().sum::<f64>() / n;
@@ -196,7 +202,7 @@ pub fn gradient_descent(design: &Design, f: &[f64], start: &[f64], rate: f64, it
             let error = dot(&slopes, &centred) - (f - mean_f);
             gradient.iter_mut().zip(&centred).for_each(|(g, c)| *g += error * c / n);
         }
-        slopes.iter_mut().zip(&gradient).for_each(|(s, g)| *s -= rate * g);
+        slopes.iter_mut().zip(&gradient).enumerate().for_each(|(j, (s, g))| *s += step(j, -g));
     }
     Regression { intercept: mean_f - dot(&slopes, &means), slopes }
 }
@@ -259,7 +265,7 @@ mod tests {
         let (u, f) = samples(64, 2, 8);
         let design = Design::legendre(&u, 2, 2);
         let exact = Regression::fit(&design, &f, 0.0);
-        let descent = gradient_descent(&design, &f, &[0.0; 5], 0.4, 400);
+        let descent = gradient_descent(&design, &f, &[0.0; 5], 400, |_, g| 0.4 * g);
         assert!((exact.intercept - descent.intercept).abs() < 1e-9);
     }
 }

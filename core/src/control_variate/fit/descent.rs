@@ -89,6 +89,7 @@ pub fn estimate_from<R: Real>(
     basis.set(config.basis, config.checked_shape()?);
     let reader = Reader::new(config, samples)?;
     Plan::new(config, basis.columns(), reader.len())?;
+    design::check_count::<R>(reader.len())?;
     let columns = config.controls + basis.columns();
     if coefficients.len() != columns * reader.channels() {
         return Err(Error::Range);
@@ -106,17 +107,17 @@ pub fn estimate_from<R: Real>(
     for (index, (out, &value)) in solutions.iter_mut().zip(&*coefficients).enumerate() {
         *out = unit(index).stored_length(value);
     }
-    let plain = result::plain_variance(&design);
-    let outcome = descend(&design, config, &basis, solutions, plain, &mut arena);
+    let summary = Summary::of(&design, &reader);
+    let outcome = descend(&design, config, &basis, solutions, summary.variance, &mut arena);
     for (index, (out, &value)) in coefficients.iter_mut().zip(&*solutions).enumerate() {
         *out = result::saturate(unit(index).length(value));
     }
-    Ok(Summary::of(&design, &reader).finish(outcome))
+    Ok(summary.finish(outcome))
 }
 
 /// Improves the coefficients, a row for each channel, step by step, and says what they make of the plain mean and of
-/// its variance. A descent that ends farther from the values than it would without any function, as for a step length
-/// of the caller's, ends at zero: the plain mean.
+/// its variance. A descent that ends farther from the values than the plain mean is makes that of them; its
+/// coefficients are zero then, unless they came nearer than the start.
 #[inline(never)]
 pub(crate) fn descend<R: Real>(
     objective: &impl Objective<R>,
@@ -152,6 +153,9 @@ pub(crate) fn descend<R: Real>(
     };
     for (channel, solution) in rows_mut(coefficients, columns).enumerate() {
         let square = about.squares[channel];
+        // Of a start at zero there is nothing to compute.
+        let is_cold = solution.iter().all(|&b| b == R::ZERO);
+        let start = if is_cold { square } else { objective.residual_square(channel, solution) };
         let descent = Descent::new(config, (square / n).sqrt(), curvature);
         first.fill(R::ZERO);
         second.fill(R::ZERO);
@@ -163,7 +167,11 @@ pub(crate) fn descend<R: Real>(
         let residual = objective.residual_square(channel, solution);
         let is_fit = residual <= square;
         if !is_fit {
-            solution.fill(R::ZERO);
+            // What came nearer than its start is a start for the next.
+            let is_nearer = residual < start;
+            if !is_nearer {
+                solution.fill(R::ZERO);
+            }
             continue;
         }
         objective.gradient(Some(channel), solution, gradient);

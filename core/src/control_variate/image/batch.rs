@@ -7,7 +7,9 @@ use super::super::config::Config;
 use super::call::Call;
 use super::groups::{Group, Groups, Place};
 use super::pixels::{Image, MAX_AXES};
-use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Sums, minus, only, product, zip_four};
+use super::products::{
+    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Sums, minus, only, plus, product, total, zip_four,
+};
 use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
@@ -148,6 +150,13 @@ impl<'a> Batch<'a> {
     /// A sum over all pixels of a group, by those of its lanes.
     pub(super) fn joined(&self, sum: &Eight) -> Eight {
         if self.is_joined { [lanes::sum(sum); LANES] } else { *sum }
+    }
+
+    /// How many pixels of some colours there are, in fits or not: of one sample each, whether a pixel's own value keeps
+    /// it out of fits must not change the ridge of those that correct it.
+    pub(super) fn present(&self, colours: Colours) -> Eight {
+        let ones = self.blocks(colours).filter_map(|block| row_at(self.places, self.terms.fixed(), block).first());
+        self.joined(&ones.fold(NONE, |count, ones| plus(&count, &total(ones))))
     }
 
     /// What there is of the samples of a colour about their pixels' means.

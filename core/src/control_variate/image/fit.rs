@@ -176,15 +176,14 @@ impl<'a> Fits<'a> {
     pub(super) fn factor(&mut self, batch: &Batch<'_>, training: Colours) {
         let (call, terms) = (batch.call, &batch.terms);
         let width = terms.columns();
-        let count = |sums: &Sums<'_>| at(sums.part(0).gram, 0);
         let (count, own) = if call.n == 1 {
             self.system.set_total(&batch.between, training);
             // One sample less where a pixel's own is left out afterwards.
-            (count(&self.system), 1.0)
+            (batch.present(training), 1.0)
         } else {
             let weight = self.weigh(batch, training);
             self.system.add_weighted(&self.between, &weight);
-            (count(&self.between), 0.0)
+            (at(self.between.part(0).gram, 0), 0.0)
         };
         let scale = scale(call.config, &count.map(|count| count - own));
         let Part { gram, sides, .. } = self.system.part_mut(0);

@@ -71,7 +71,7 @@ use terms::Terms;
 /// # Errors
 /// As for [`estimate_image`]; [`Error::Memory`] if no memory could be large enough.
 pub fn image_workspace_len(config: &Config, image: &Image<'_>, n: usize) -> Result<usize, Error> {
-    Layout::new(config, image)?.of(n).workspace_len().ok_or(Error::Memory)
+    Layout { n, ..Layout::new(config, image)? }.workspace_len().ok_or(Error::Memory)
 }
 
 /// Which samples count must not depend on the pixel, the fit is of the channels, and other estimators share no fits.
@@ -138,7 +138,7 @@ pub fn estimate_image_by<P: Processor>(
     if n * layout.pixels != reader.len() {
         return Err(Error::Range);
     }
-    let layout = layout.of(n);
+    let layout = Layout { n, ..layout };
     let mut basis = Basis::empty();
     basis.set(config.basis, layout.shape);
     reader.check()?;
@@ -152,11 +152,6 @@ impl<'a> Layout<'a> {
         let shape = config.checked_shape()?.apart();
         check_supported(config, image)?;
         Ok(Self { config, image, windows: image.windows()?, pixels: image.pixels()?, shape, n: 0 })
-    }
-
-    /// The same, of so many samples in each pixel.
-    fn of(self, n: usize) -> Self {
-        Self { n, ..self }
     }
 
     /// How many rows of windows are worked on before pixels are written, and how many rows of pixels those touch.

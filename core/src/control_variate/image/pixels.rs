@@ -33,7 +33,8 @@ pub struct Image<'a> {
     /// Images of the same pixels, at other times; they share fits. 0 means 1.
     pub frames: usize,
     /// Whether the pixels have no places: all of the same surface, in all frames, then share one fit, whatever `window`
-    /// and `stride` say. With `surfaces` they are at most [`Image::MAX_WINDOW`].
+    /// and `stride` say. With `surfaces` they are at most [`Image::MAX_WINDOW`]. Which of them correct which, and
+    /// choose for which, goes by their order: shuffle them where that follows a picture.
     pub unordered: bool,
     /// Width and height of the square windows that pixels share a fit in; 0 means 8. A window has at most
     /// [`Image::MAX_WINDOW`] pixels in all frames together.

@@ -118,7 +118,7 @@ impl<'a> Apart<'a> {
             }
             (self.own, self.width) = (at(&terms.own, fit), at(&terms.ends, fit));
             let fits = begin..fit + 1;
-            self.factor(batch, penalties, fits.clone());
+            self.factor(batch, penalties, training, fits.clone());
             if batch.call.n == 1 {
                 for block in batch.blocks(training) {
                     self.leave_own(batch, block, fits.clone(), corrections);
@@ -158,14 +158,17 @@ impl<'a> Apart<'a> {
 
     /// Factors the system; of one sample in each pixel with the trends of the candidates `fits`.
     #[inline(always)]
-    fn factor(&mut self, batch: &Batch<'_>, penalties: &[f32], fits: Range<usize>) {
+    fn factor(&mut self, batch: &Batch<'_>, penalties: &[f32], training: Colours, fits: Range<usize>) {
         let (terms, values, slices) = (&batch.terms, batch.values, batch.terms.slices);
         let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(batch));
         let linear = batch.call.shape.linear() as f32;
-        let counts = (0..slices).map(|slice| at(self.totals.part(slice).gram, 0));
-        let count = counts.fold(NONE, |sum, count| plus(&sum, &count));
         // Where a pixel's own sample is left out afterwards, of which there is one less.
-        let (left_out, units) = if batch.call.n == 1 { (1.0, fixed) } else { (0.0, 0) };
+        let (count, left_out, units) = if batch.call.n == 1 {
+            (batch.present(training), 1.0, fixed)
+        } else {
+            let counts = (0..slices).map(|slice| at(self.totals.part(slice).gram, 0));
+            (counts.fold(NONE, |sum, count| plus(&sum, &count)), 0.0, 0)
+        };
         let ends = part(&terms.ends, fits.start, fits.len());
         empty(self.trends);
         let scale = scale(batch.call.config, &count.map(|count| count - left_out));

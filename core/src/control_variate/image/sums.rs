@@ -16,8 +16,16 @@ const COMMON: usize = 3;
 /// The largest correction that the windows of a pixel may add up: their weights are at most 512.
 const MOST: f32 = (1_u128 << 118) as f32;
 
-/// The square of a likely correction is at most this many times the variance of the mean.
-const UNLIKELY: f64 = 4.0;
+/// The square of a likely correction of a pixel of `n` samples, two or more, is at most this many times the variance of
+/// their mean: the square, or within 2 % of it, of what Student's t of n - 1 degrees of freedom is below as often as a
+/// normal number is below two standard deviations.
+fn most_likely(n: usize) -> f64 {
+    match n {
+        2 => 195.1,
+        3 => 20.5,
+        _ => 4.0 + 10.3 / (n as f64 - 2.5),
+    }
+}
 
 /// Numbers that are summed for each pixel over the groups that it was in; of each channel the correction and what the
 /// standard error comes from.
@@ -200,7 +208,7 @@ impl Call<'_> {
     #[inline(always)]
     fn estimate(&self, pixel: usize, sums: &[Eight], out: &mut [Estimate; LANES]) {
         let Some(([weight, error_weight, gain], each)) = sums.split_first_chunk() else { return };
-        let by_groups = self.error_is_the_groups();
+        let (by_groups, likely) = (self.error_is_the_groups(), most_likely(self.n));
         // Without a weight all sums are zero.
         let [over, error_over] = [weight, error_weight].map(inverse);
         let gain = narrow(&lanes::zip(&wide(gain), &over, |gain, over| gain * over), |gain| gain as f32);
@@ -233,7 +241,7 @@ impl Call<'_> {
                     let ratio = if has_ratio { spread[l] * spread[l] } else { 1.0 };
                     // A correction that the pixel's own samples make unlikely is an error.
                     let moved = if is_corrected { correction[l] * correction[l] } else { 0.0 };
-                    told[l] = ratio * variance[l] + (moved - UNLIKELY * variance[l]).max(0.0);
+                    told[l] = ratio * variance[l] + (moved - likely * variance[l]).max(0.0);
                 }
                 told = told.map(libm::sqrt);
             }
