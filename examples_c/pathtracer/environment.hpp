@@ -151,10 +151,8 @@ private:
         const double *row = &columns_[size_t{y} * width_];
         double sum = row[width_ - 1], share = sum > 0 ? (row[x] - (x ? row[x - 1] : 0)) / sum : 0;
         share *= (rows_[y] - (y ? rows_[y - 1] : 0)) / rows_[height_ - 1];
-        float sine = std::sin(pi * latitude);
-        if (!(share > 0 && sine > 0))
-            return 0;
-        return static_cast<float>(share) * static_cast<float>(width_) * static_cast<float>(height_) / (2 * pi * pi * sine);
+        float pixels = static_cast<float>(width_) * static_cast<float>(height_), sine = std::sin(pi * latitude);
+        return sine > 0 ? static_cast<float>(share) * pixels / (2 * pi * pi * sine) : 0;
     }
 
     // Which entry of a running sum u in [0, 1) falls into; u becomes its place within that, in [0, 1).

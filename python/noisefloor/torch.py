@@ -161,8 +161,9 @@ class ImportanceBatchSampler(Sampler):
         return index, weight
 
     def batch(self) -> tuple[torch.Tensor, torch.Tensor]:
-        """Index and weight, int64 and float32 tensors of shape (batch_size,) on the CPU, of the batch that the loader has just
-        handed over; once for each batch. The mean of weight times loss estimates the mean loss over all items."""
+        """Index and weight, int64 and float32 tensors of shape (batch_size,) on the CPU, of the batch that the
+        loader has just handed over; once for each batch. The mean of weight times loss estimates the mean loss over all
+        items."""
         if not self._ahead:
             raise RuntimeError(
                 "batch() is for each batch of the loader, once: there is none that it was not called for"
