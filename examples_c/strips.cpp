@@ -1,7 +1,6 @@
 // An image by threads, each a strip of it: the same bits as from one call. It prints the errors of the mean and of
 // noisefloor, and how many pixels differ.
 #include "noisefloor.hpp"
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>

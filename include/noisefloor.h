@@ -46,27 +46,27 @@
 #define NF_ASSERT_LAYOUT(condition) _Static_assert(condition, "noisefloor: unexpected struct layout")
 #define NF_ASSERT_ALIGNED_AS(a, b) NF_ASSERT_LAYOUT(_Alignof(a) == _Alignof(b))
 #else
-#define NF_ASSERT_LAYOUT(condition) extern char nf_assert_layout[(condition) ? 1 : -1]
+#define NF_ASSERT_LAYOUT(condition) unsigned : (condition) ? 1 : -1
 #define NF_ASSERT_ALIGNED_AS(a, b) NF_ASSERT_LAYOUT(sizeof(a) % sizeof(b) == 0)
 #endif
 #define NF_ASSERT_STRUCT(a, size, field, offset, b) \
     NF_ASSERT_LAYOUT(sizeof(a) == (size) && offsetof(a, field) == (offset)); NF_ASSERT_ALIGNED_AS(a, b)
-NF_ASSERT_LAYOUT(sizeof(nf_status) == 4);
+struct nf_layouts { /* In one struct: C99's are bit-fields without names. */
+NF_ASSERT_LAYOUT(sizeof(nf_status) == 4 && sizeof(nf_cv_descent) == 16 && sizeof(nf_importance_arguments) == 12);
 NF_ASSERT_STRUCT(nf_cv_config, 64, ridge, 60, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_cv_samples) == 6 * sizeof(void *) + sizeof(size_t));
-NF_ASSERT_LAYOUT(sizeof(nf_cv_descent) == 16);
 NF_ASSERT_STRUCT(nf_estimate, 40, samples, 32, float);
 NF_ASSERT_LAYOUT(sizeof(nf_cv_image) == 24 + 2 * sizeof(void *) + 32 && offsetof(nf_cv_image, surfaces) == 24);
 NF_ASSERT_STRUCT(nf_cv_rectangle, 16, width, 8, uint32_t);
 NF_ASSERT_STRUCT(nf_recommendation, 96, config, 32, uint32_t);
 NF_ASSERT_STRUCT(nf_omis_arguments, 2 * sizeof(void *) + 16, beta, sizeof(void *) + 16, void *);
-NF_ASSERT_LAYOUT(sizeof(nf_importance_arguments) == 12);
 NF_ASSERT_STRUCT(nf_tile, 2 * sizeof(void *) + 24, size, 2 * sizeof(void *), void *);
 NF_ASSERT_STRUCT(nf_tile_sampler, sizeof(void *) + 16, domain, sizeof(void *), void *);
 NF_ASSERT_STRUCT(nf_sampler, 16, x, 8, uint32_t);
 NF_ASSERT_STRUCT(nf_rng, 16, increment, 8, uint64_t);
 NF_ASSERT_STRUCT(nf_table, 2 * sizeof(void *) + 24, items, 2 * sizeof(void *) + 8, double);
 NF_ASSERT_STRUCT(nf_shard, 16, items, 8, uint64_t);
+char unused; };
 #undef NF_ASSERT_STRUCT
 #undef NF_ASSERT_ALIGNED_AS
 #undef NF_ASSERT_LAYOUT

@@ -60,6 +60,14 @@ private:
     std::size_t size_ = 0;
 };
 
+namespace detail {
+// If a C is a container, and no view, that ends with the expression: what keeps a pointer to its elements refuses it.
+template <class C>
+using if_ends = std::enable_if_t<!std::is_reference_v<C> &&
+                                 !std::is_same_v<decltype(std::declval<std::remove_const_t<C> &>().data()),
+                                                 decltype(std::declval<const C &>().data())>>;
+} // namespace detail
+
 // Memory for the library to work in, 8-byte aligned. Made from an array or container of any trivial type.
 class memory {
 public:
@@ -152,10 +160,13 @@ template <class T> struct [[nodiscard]] result {
     T value{};
     constexpr bool ok() const noexcept { return code == status::ok; }
     constexpr explicit operator bool() const noexcept { return ok(); }
-    constexpr const T &operator*() const noexcept { return value; }
-    constexpr T &operator*() noexcept { return value; }
-    constexpr const T *operator->() const noexcept { return &value; }
-    constexpr T *operator->() noexcept { return &value; }
+    constexpr const T &operator*() const & noexcept { return value; }
+    constexpr T &operator*() & noexcept { return value; }
+    // Of a temporary a value, and no pointer: what keeps one (a tile_sampler, say) takes no temporary.
+    constexpr T operator*() const && noexcept { return value; }
+    constexpr const T *operator->() const & noexcept { return &value; }
+    constexpr T *operator->() & noexcept { return &value; }
+    void operator->() const && = delete;
 };
 template <> struct [[nodiscard]] result<void> {
     status code = status::ok;
@@ -311,6 +322,7 @@ public:
         copy.has_surfaces_ = true;
         return copy;
     }
+    template <class C, class = detail::if_ends<C>> image with_surfaces(C &&) const = delete;
     // config::channels numbers for each pixel.
     image with_factors(span<const float> values) const noexcept
     {
@@ -320,6 +332,7 @@ public:
         copy.has_factors_ = true;
         return copy;
     }
+    template <class C, class = detail::if_ends<C>> image with_factors(C &&) const = delete;
 
     // nf_cv_image::wanted and nf_cv_image::given: the pixels to estimate, and those that the arrays hold.
     image with_parts(const nf_cv_rectangle &wanted_pixels, const nf_cv_rectangle &given_pixels) const noexcept
@@ -677,6 +690,7 @@ struct tile : nf_tile {
         return detail::finish(nf_tile_from_bytes(bytes, len, &made), made);
     }
     static returned<tile> from_bytes(span<const unsigned char> bytes) { return from_bytes(bytes.data(), bytes.size()); }
+    template <class C, class = detail::if_ends<C>> static returned<tile> from_bytes(C &&) = delete;
 };
 
 // nf_sampler: one sample of one pixel of the default sampler. `sampler(x, y, frame, index).domain(3).draw<2>()`.
@@ -866,9 +880,9 @@ public:
     returned<void> set_uniform_fraction(float fraction)
     {
         const bool is_fraction = fraction >= 0.0f && fraction <= 1.0f;
-        if (is_fraction)
+        if (is_fraction && state_.magic != 0)
             state_.uniform_fraction = fraction;
-        return detail::finish(is_fraction ? NF_OK : NF_ERR_RANGE);
+        return detail::finish(!is_fraction ? NF_ERR_RANGE : state_.magic != 0 ? NF_OK : NF_ERR_STATE);
     }
     returned<void> add_epsilon(float epsilon) { return detail::finish(nf_table_add_epsilon(&state_, epsilon)); }
     returned<void> append(span<const float> importance)
@@ -1051,10 +1065,9 @@ public:
                             span<const float> gradients, span<float> out, float momentum = 0.0f,
                             optimal_mis::solver how = optimal_mis::solver::ridge, float ridge = 0.0f) const
     {
-        const std::size_t batch = technique.size();
-        const bool fits = batch > 0 && batch <= UINT32_MAX && pdf.size() % batch == 0 &&
-                          pdf.size() / batch == techniques_ && gradients.size() % batch == 0 &&
-                          gradients.size() / batch == parameters_ && out.size() == parameters_;
+        const std::uint64_t batch = technique.size();
+        const bool fits = batch <= UINT32_MAX && pdf.size() == batch * techniques_ &&
+                          gradients.size() == batch * parameters_ && out.size() == parameters_;
         return detail::finish(fits ? nf_gradient_estimate(handle_, static_cast<std::uint32_t>(how), ridge, momentum,
                                                           items, pdf.data(), technique.data(), gradients.data(),
                                                           static_cast<std::uint32_t>(batch), out.data())

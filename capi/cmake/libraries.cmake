@@ -11,14 +11,14 @@ foreach(file Cargo.toml ../Cargo.toml ../Cargo.lock ../core/Cargo.toml)
     endif()
 endforeach()
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${settings} include/noisefloor/base.h)
-set(archive "${NOISEFLOOR_CARGO_TARGET_DIR}/${cargo_folder}/libnoisefloor.a")
+set(archive "${NOISEFLOOR_CARGO_TARGET_DIR}/${cargo_target}/release/libnoisefloor.a")
 set(object "${CMAKE_CURRENT_BINARY_DIR}/noisefloor.o")
 # The profile is the workspace's; where the package stands alone nothing else says it.
 set(profile CARGO_PROFILE_RELEASE_PANIC=abort CARGO_PROFILE_RELEASE_LTO=fat CARGO_PROFILE_RELEASE_CODEGEN_UNITS=1
     "CARGO_PROFILE_RELEASE_OPT_LEVEL=${NOISEFLOOR_OPT_LEVEL}")
 add_custom_command(
     OUTPUT "${object}"
-    COMMAND "${CMAKE_COMMAND}" -E env --unset=MAKEFLAGS --unset=CARGO_BUILD_TARGET ${profile}
+    COMMAND "${CMAKE_COMMAND}" -E env --unset=MAKEFLAGS ${profile}
         ${NOISEFLOOR_CARGO_ENVIRONMENT} "${NOISEFLOOR_CARGO}" ${cargo_build} --quiet --release --locked --lib
         --manifest-path "${CMAKE_CURRENT_SOURCE_DIR}/Cargo.toml" --target-dir "${NOISEFLOOR_CARGO_TARGET_DIR}"
     COMMAND "${CMAKE_COMMAND}" -E env "LD=${CMAKE_LINKER}" "NM=${CMAKE_NM}" "OBJCOPY=${CMAKE_OBJCOPY}"

@@ -50,15 +50,14 @@ if(NOT NOISEFLOOR_OPT_LEVEL MATCHES "^[0123sz]$")
         "noisefloor: NOISEFLOOR_OPT_LEVEL is `${NOISEFLOOR_OPT_LEVEL}`: it must be one of 0, 1, 2, 3, s and z")
 endif()
 
-# Sets cargo's command, and the folder in cargo's target folder where its archive will be.
-if(NOISEFLOOR_RUST_TARGET)
-    # Without the shared library, which cargo would link with this machine's linker.
-    set(cargo_build rustc --crate-type staticlib --target "${NOISEFLOOR_RUST_TARGET}")
-    set(cargo_folder "${NOISEFLOOR_RUST_TARGET}/release")
-else()
-    set(cargo_build build)
-    set(cargo_folder release)
+# Named even where it is this machine: cargo's configuration may name another.
+set(cargo_target "${NOISEFLOOR_RUST_TARGET}")
+if(NOT cargo_target)
+    execute_process(COMMAND "${NOISEFLOOR_CARGO}" --version --verbose OUTPUT_VARIABLE version)
+    string(REGEX REPLACE ".*\nhost: ([^\n]+).*" "\\1" cargo_target "${version}")
 endif()
+# Without the shared library, which cargo would link with this machine's linker.
+set(cargo_build rustc --crate-type staticlib --target "${cargo_target}")
 if(NOT NOISEFLOOR_DOUBLE)
     list(APPEND cargo_build --no-default-features)
 endif()

@@ -30,8 +30,8 @@ pub const NF_CHECK_TILE_SAMPLER: u32 = 7;
 pub const NF_CHECK_DIMS: u32 = 8;
 
 /// What is wrong with the configuration that `what` points to, of a kind NF_CHECK_*: a static sentence that names the
-/// first field that is out of its range, and the range, or NULL. Arrays are not read, and options that only some
-/// functions take, NF_ERR_UNSUPPORTED elsewhere, pass. Any nf_sampler is a valid one.
+/// first field that is out of its range, and the range, or NULL. No array is read but the counts of nf_omis_arguments,
+/// and options that only some functions take, NF_ERR_UNSUPPORTED elsewhere, pass. Any nf_sampler is a valid one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_check(kind: u32, what: *const c_void) -> *const c_char {
     // SAFETY: the caller passes NULL or what the kind says, and what that points to.

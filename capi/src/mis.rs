@@ -22,7 +22,7 @@ pub const NF_MIS_CUTOFF: u32 = 2;
 pub const NF_MIS_MAXIMUM: u32 = 3;
 
 /// The weight of technique j at one point by a heuristic. The sum over all samples of weight * f / (n_j p_j) is
-/// unbiased (2.10).
+/// unbiased (2.10). Where p_j is infinite, take for f / p_j the finite ratio that the renderer has.
 ///
 /// parameter: beta or epsilon, else not read. pdf[techniques]: p_k, the density of each technique at the point, at
 /// least 0; infinite ones (delta distributions) are equally dense, and finite ones then count as 0. counts[techniques]:

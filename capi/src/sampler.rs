@@ -72,26 +72,18 @@ pub unsafe extern "C" fn nf_sampler_draw(sampler: nf_sampler, dims: u32, u: *mut
 }
 
 /// # Safety
-/// As for [`draw`].
+/// `u` must be NULL or have room for `dims` numbers, if that is 1 to 4.
 #[inline(never)]
 unsafe fn others(sampler: nf_sampler, dims: u32, u: *mut f32) {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        match dims {
-            1 => draw::<1>(&sampler, u),
-            3 => draw::<3>(&sampler, u),
-            4 => draw::<4>(&sampler, u),
-            _ => {}
-        }
+    if !(1..=4).contains(&dims) {
+        return;
     }
-}
-
-/// # Safety
-/// `u` must be NULL or have room for N numbers.
-unsafe fn draw<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
     // SAFETY: passed on to the caller.
-    if let Ok(u) = unsafe { convert::rooms(u, N) } {
-        write::<N>(sampler, u);
+    let Ok(u) = (unsafe { convert::rooms(u, dims as usize) }) else { return };
+    match dims {
+        1 => write::<1>(&sampler, u),
+        3 => write::<3>(&sampler, u),
+        _ => write::<4>(&sampler, u),
     }
 }
 

@@ -68,7 +68,7 @@ fn parts(blocks: u32) -> Option<(usize, usize)> {
 
 /// Makes a table of `items` items in `memory`, of which more than nf_table_size(items) bytes are room for
 /// nf_table_append. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch
-/// (Algorithm 4).
+/// (Algorithm 4). uniform_fraction becomes .2.
 ///
 /// NF_ERR_RANGE: no items, or a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all are 0; NF_ERR_MEMORY.
 #[unsafe(no_mangle)]
@@ -128,8 +128,8 @@ pub unsafe extern "C" fn nf_table_draw_stratified(
 }
 
 /// Draws `batch` different items, the k-th being item i with probability c_i = ((1 - d) q_i / sum q + d / N) / (1 - d
-/// (k - 1) / N), the sum being that of the items not yet drawn. weight: (1 / c_k + batch - k) / N, for the same
-/// unbiased estimate (Raj 1956).
+/// (k - 1) / N), the sum being that of the items not yet drawn. weight: (1 / c_k + batch - k) / N, at most
+/// 1 / d + (batch - 1) / N, for the same unbiased estimate (Raj 1956).
 ///
 /// The table is written meanwhile, and the same afterwards. A draw takes the time of some ten updates, or, where a few
 /// items have nearly all of the sum, time for every item.
@@ -258,6 +258,7 @@ pub unsafe extern "C" fn nf_table_load(
 ) -> nf_status {
     status((|| {
         convert::usable(table)?;
+        convert::usable(saved)?;
         // SAFETY: the caller passes `len` bytes.
         let saved = unsafe { convert::slice(saved.cast::<u8>(), len) }?;
         let items = table::saved_items(saved)?;

@@ -74,8 +74,8 @@ pub struct Recommendation {
 /// best, though a cheaper fit than the one that is best at equal samples may pay earlier. Infinity compares errors at
 /// equal samples.
 ///
-/// What was measured are 1, 2, 4, 5, 8 and 15 dims with 1, 4, 16, 64 and 256 samples: dims are rounded up, samples
-/// down.
+/// What was measured are 1, 2, 4, 5, 8 and 15 dims with 1, 4, 16, 64 and 256 samples: dims are rounded up, those above
+/// 15 count as 15, samples are rounded down.
 ///
 /// # Errors
 /// [`Error::Range`] if `dims`, `samples_per_pixel` or the cost is not above 0, [`Error::NotFinite`] for a cost of NaN.

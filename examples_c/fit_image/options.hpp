@@ -50,6 +50,9 @@ inline std::vector<const Method *> parse_methods(const std::string &names)
         const std::size_t end = std::min(names.find(',', start), names.size());
         const std::string name = names.substr(start, end - start);
         const std::size_t before = chosen.size();
+        for (const Method *other : chosen)
+            if (name == other->name)
+                throw std::runtime_error("--methods: `" + name + "` is named twice");
         for (const Method &method : methods())
             if (name == method.name)
                 chosen.push_back(&method);

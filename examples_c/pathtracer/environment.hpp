@@ -33,9 +33,9 @@ public:
                         throw std::runtime_error("an environment map must be finite and not negative: pixel (" +
                                                  std::to_string(x) + ", " + std::to_string(y) + ") has " +
                                                  std::to_string(color[c]));
-                columns_[size_t{y} * width + x] = static_cast<float>(row += weight(x, y));
+                columns_[size_t{y} * width + x] = row += weight(x, y);
             }
-            rows_[y] = static_cast<float>(total += row);
+            rows_[y] = total += row;
         }
         if (!(total > 0) || !std::isfinite(total))
             throw std::runtime_error("an environment map must shine, with a finite sum");
@@ -148,27 +148,27 @@ private:
     // Of the pixel, divided by what the map does to areas at that latitude.
     float density(uint32_t x, uint32_t y, float latitude) const
     {
-        const float *row = &columns_[size_t{y} * width_];
-        float sum = row[width_ - 1], sine = std::sin(pi * latitude);
-        if (!(sum > 0 && sine > 0))
-            return 0;
-        float share = (row[x] - (x ? row[x - 1] : 0)) / sum * (rows_[y] - (y ? rows_[y - 1] : 0)) / rows_[height_ - 1];
-        return share * static_cast<float>(width_) * static_cast<float>(height_) / (2 * pi * pi * sine);
+        const double *row = &columns_[size_t{y} * width_];
+        double sum = row[width_ - 1], share = sum > 0 ? (row[x] - (x ? row[x - 1] : 0)) / sum : 0;
+        share *= (rows_[y] - (y ? rows_[y - 1] : 0)) / rows_[height_ - 1];
+        float pixels = static_cast<float>(width_) * static_cast<float>(height_), sine = std::sin(pi * latitude);
+        return sine > 0 ? static_cast<float>(share) * pixels / (2 * pi * pi * sine) : 0;
     }
 
     // Which entry of a running sum u in [0, 1) falls into; u becomes its place within that, in [0, 1).
-    static uint32_t pick(const float *sums, uint32_t count, float &u)
+    static uint32_t pick(const double *sums, uint32_t count, float &u)
     {
-        float at = u * sums[count - 1];
+        double at = u * sums[count - 1];
         uint32_t i = std::min(static_cast<uint32_t>(std::upper_bound(sums, sums + count, at) - sums), count - 1);
-        float before = i ? sums[i - 1] : 0, width = sums[i] - before;
-        u = width > 0 ? std::min((at - before) / width, 0x1.fffffep-1f) : 0.5f;
+        double before = i ? sums[i - 1] : 0, width = sums[i] - before;
+        u = width > 0 ? std::min(static_cast<float>((at - before) / width), 0x1.fffffep-1f) : 0.5f;
         return i;
     }
 
     uint32_t width_, height_;
     std::vector<Color> pixels_;
-    std::vector<float> columns_, rows_; // running sums of weights, of each row and of the rows
+    // Running sums of weights, of each row and of the rows: in float, pixels behind a bright one would add nothing.
+    std::vector<double> columns_, rows_;
 };
 
 } // namespace demo

@@ -2,7 +2,6 @@
 // 2006), so that every sample has the same weight and each pixel remains an integral of its own.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 namespace demo {

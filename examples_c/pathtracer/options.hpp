@@ -67,7 +67,8 @@ inline void print_usage(FILE *to, const Program &program)
         "--scramble: tiles are shifted by the seed instead of placed by it: exactly unbiased, and not as good.\n"
         "--table: points for the sampler of that name, made elsewhere; their format is in "
         "pathtracer/table_sampler.hpp.\n"
-        "--regressed: how many of the sample vector's numbers the estimators regress, from its start.\n\nsamplers:",
+        "--regressed: how many of the sample vector's numbers the estimators regress, from its start; those told\n"
+        "which light was picked regress the numbers up to that instead.\n\nsamplers:",
         program.name.c_str());
     for (const char *name : sampler_names)
         std::fprintf(to, " %s", name);

@@ -3,7 +3,6 @@
 
 #include "integrand.hpp"
 #include "sobol.hpp"
-#include <algorithm>
 #include <stdexcept>
 #include <vector>
 

@@ -6,7 +6,6 @@
 #include "light.hpp"
 #include "material.hpp"
 #include <functional>
-#include <stdexcept>
 #include <string>
 
 namespace demo {

@@ -51,7 +51,8 @@ private:
 // One random bit for each node of a binary tree; the root is node 1, the children of node i are 2 i and 2 i + 1.
 class Tree {
 public:
-    explicit Tree(uint64_t key = 0) : key_(key), top_(mix(key)), leaves_(mix(~key)) {}
+    // Any keys, even such as differ by `golden`, which trees' words are apart.
+    explicit Tree(uint64_t key = 0) : key_(mix(key)), top_(mix(key_)), leaves_(mix(~key_)) {}
 
     uint32_t flip(uint32_t node) const
     {

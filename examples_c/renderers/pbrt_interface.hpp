@@ -23,17 +23,24 @@ struct CameraSample {
 class Film {
 public:
     Film(Point2i resolution, int spp)
-        : resolution_(resolution), spp_(spp), values_(static_cast<size_t>(resolution.x * resolution.y * spp))
+        : resolution_(resolution), spp_(spp), values_(index({0, resolution.y}, 0))
     {
     }
     Point2i FullResolution() const { return resolution_; }
     void AddSample(Point2i p, int sampleIndex, Float value)
     {
-        values_[static_cast<size_t>((p.y * resolution_.x + p.x) * spp_ + sampleIndex)] = value;
+        values_[index(p, sampleIndex)] = value;
     }
     const std::vector<Float> &Values() const { return values_; }
 
 private:
+    // Images of many samples have more than an int counts.
+    size_t index(Point2i p, int sampleIndex) const
+    {
+        const size_t row = static_cast<size_t>(p.y), width = static_cast<size_t>(resolution_.x);
+        return (row * width + static_cast<size_t>(p.x)) * static_cast<size_t>(spp_) + static_cast<size_t>(sampleIndex);
+    }
+
     Point2i resolution_;
     int spp_;
     std::vector<Float> values_;

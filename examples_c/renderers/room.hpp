@@ -2,7 +2,6 @@
 // material.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>

@@ -108,6 +108,7 @@ static options options_parse(int count, char **words)
     o.hidden[0] = 128, o.hidden[1] = 64;
     o.adam = 1, o.final_rate = 1.0f, o.sgd_momentum = 0.9f;
     o.gamma = 0.3f, o.delta = 0.2f, o.techniques = 8;
+    const char *compared = NULL; /* an option that --variance, which compares no runs, does not read */
     for (int i = 1; i < count; ++i) {
         const char *name = words[i];
         if (strcmp(name, "--help") == 0) {
@@ -123,6 +124,9 @@ static options options_parse(int count, char **words)
             fail("`%s` is no option; --help lists them", name);
         if (value == NULL)
             fail("%s: unknown, or its value is missing; --help lists the options", name);
+        if (strcmp(name, "--mode") == 0 || strcmp(name, "--modes") == 0 || strcmp(name, "--seeds") == 0 ||
+            strcmp(name, "--batch") == 0 || strcmp(name, "--rows") == 0)
+            compared = name;
         if (strcmp(name, "--data") == 0)
             o.data = value;
         else if (strcmp(name, "--mode") == 0 || strcmp(name, "--modes") == 0)
@@ -172,6 +176,8 @@ static options options_parse(int count, char **words)
     }
     if (o.data == NULL)
         fail("--data FOLDER is missing; --help lists the options");
+    if (o.variance != NULL && compared != NULL)
+        fail("%s: not with --variance, which has one network, all ways to draw, and batches of its own", compared);
     for (uint32_t i = 0; i < o.mode_count; ++i)
         if ((o.modes[i] == BALANCE || o.modes[i] == OMIS) && o.techniques > o.batch)
             fail("%s: a batch of %u has no item for each of %u distributions", mode_name[o.modes[i]], o.batch,

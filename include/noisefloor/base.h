@@ -47,8 +47,8 @@ const char *nf_status_message(nf_status status);
 #define NF_CHECK_DIMS 8 // nf_check: a uint32_t, the `dims` that any sampler is to draw.
 
 // What is wrong with the configuration that `what` points to, of a kind NF_CHECK_*: a static sentence that names the
-// first field that is out of its range, and the range, or NULL. Arrays are not read, and options that only some
-// functions take, NF_ERR_UNSUPPORTED elsewhere, pass. Any nf_sampler is a valid one.
+// first field that is out of its range, and the range, or NULL. No array is read but the counts of nf_omis_arguments,
+// and options that only some functions take, NF_ERR_UNSUPPORTED elsewhere, pass. Any nf_sampler is a valid one.
 const char *nf_check(uint32_t kind, const void *what);
 
 /* Random numbers. */

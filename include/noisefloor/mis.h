@@ -24,7 +24,7 @@ extern "C" {
 #define NF_MIS_MAXIMUM 3 // Heuristic: 1 for the first technique with the largest n_k p_k, 0 for others.
 
 // The weight of technique j at one point by a heuristic. The sum over all samples of weight * f / (n_j p_j) is
-// unbiased (2.10).
+// unbiased (2.10). Where p_j is infinite, take for f / p_j the finite ratio that the renderer has.
 // parameter: beta or epsilon, else not read. pdf[techniques]: p_k, the density of each technique at the point, at
 // least 0; infinite ones (delta distributions) are equally dense, and finite ones then count as 0. counts[techniques]:
 // n_k, samples of each technique; one with 0 has no part. techniques: 1..NF_MIS_MAX_TECHNIQUES. technique: j.

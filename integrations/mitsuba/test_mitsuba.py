@@ -562,6 +562,15 @@ class Fits(unittest.TestCase):
             with self.assertRaises((ValueError, RuntimeError)) as refused:
                 mi.load_dict({**scene, "integrator": {"type": "noisefloor_fits", **inner}})
             self.assertIn(why, f"{refused.exception} {refused.exception.__cause__}")
+        scene["integrator"] = {**aov, "inner": {"type": "noisefloor_fits", "inner": path}}
+        with self.assertRaises((ValueError, RuntimeError)) as refused:
+            mi.render(nf.prepare(mi.load_dict(scene)), spp=1)
+        self.assertIn("renders pictures alone", f"{refused.exception} {refused.exception.__cause__}")
+
+    def test_surfaces_are_those_of_the_middle_of_the_exposure(self):
+        sensor = mi.load_dict({"type": "perspective", "shutter_open": 1.0, "shutter_close": 3.0})
+        ray, _ = _fits._rays(sensor, _fits._middles(sensor.film()))
+        self.assertTrue(dr.all(ray.time == 2))
 
 
 class OtherVariants(unittest.TestCase):

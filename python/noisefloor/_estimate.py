@@ -132,9 +132,9 @@ def image_estimate(
     Args:
         u: shape (height, width, n, d), 0 to 1, as for `estimate`, or (frames, height, width, n, d).
         f: shape (height, width, n), or with `channels` (height, width, n, c); frames as u. Rounded to float32.
-        surfaces: integers of shape (height, width): only pixels with the same number share fits.
-        factors: shape (height, width), with `channels` (height, width, c), at least 0: what a pixel's values are
-            proportional to, an albedo say.
+        surfaces: integers of shape (height, width), frames as u: only pixels with the same number share fits.
+        factors: shape (height, width), with `channels` (height, width, c), frames as u, at least 0: what a pixel's
+            values are proportional to, an albedo say.
         known: of f's shape: what each sample would be with nothing in the way.
         known_integrals: of `factors`' shape, at least 0: the exact integrals of that.
         order, estimator, dims, slices, channels: as for `estimate`; "robust", "leave_one_out" or "k_fold".
@@ -261,9 +261,7 @@ def _refuse(status, u, f, config):
 
 def _result(out, channels, count):
     """What the library wrote, as arrays or floats."""
-    if channels:
-        mean, std_error = (out[name][..., :count].copy() for name in ("mean", "std_error"))
-    else:
-        mean, std_error = (out[name][..., 0].copy() for name in ("mean", "std_error"))
+    which = slice(count) if channels else 0
+    mean, std_error = (out[name][..., which].copy() for name in ("mean", "std_error"))
     parts = mean, std_error, out["gain"].copy()
     return Estimate(*(part if part.ndim else float(part) for part in parts))

@@ -47,7 +47,7 @@ class Sampler:
             width, height: how many pixels, from column x and row y on. Of both the last 16 bits count.
             samples: of each pixel, from number `first` on, up to number 2**32 - 1.
             dims: numbers of each sample, at least 1. The first four are stratified together, the first two arranged
-                across pixels. Further ones come by fours from the domains with the keys 1, 2, ...
+                across pixels. Further ones come by fours from domains whose keys count down from 2**32 - 2.
 
         Returns:
             float32 of shape (height, width, samples, dims), at least 0 and below 1.
@@ -64,7 +64,8 @@ class Sampler:
         groups = -(-dims // 4)
         samplers, parts = (_c.Sampler * groups)(), (_c.u32 * groups)()
         for group in range(groups):
-            keys = self._keys + ((group,) if group else ())
+            # Keys that nobody picks who counts decisions.
+            keys = self._keys + ((_arrays.MAX_U32 - group,) if group else ())
             samplers[group], parts[group] = self._at(*place, keys), min(4, dims - 4 * group)
         status = _c.sampler_fill(
             _c.address(samplers), _c.address(parts), groups, width, height, samples, _c.data(u), u.size

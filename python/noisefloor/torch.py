@@ -110,7 +110,7 @@ class ImportanceBatchSampler(Sampler):
         if not self._resumed:
             self._step = 0
             # First visits that did not come about, because the loader was left, are made up for.
-            self._drawn -= sum(first for *_, first in (*self._ahead, *self._replay))
+            self._drawn = min(self._drawn, self._warmup) - sum(first for *_, first in (*self._ahead, *self._replay))
             self._replay.clear()
         self._resumed = False
         self._ahead.clear()
@@ -161,8 +161,9 @@ class ImportanceBatchSampler(Sampler):
         return index, weight
 
     def batch(self) -> tuple[torch.Tensor, torch.Tensor]:
-        """Index and weight, int64 and float32 tensors of shape (batch_size,), of the batch that the loader has just
-        handed over; once for each batch. The mean of weight times loss estimates the mean loss over all items."""
+        """Index and weight, int64 and float32 tensors of shape (batch_size,) on the CPU, of the batch that the
+        loader has just handed over; once for each batch. The mean of weight times loss estimates the mean loss over all
+        items."""
         if not self._ahead:
             raise RuntimeError(
                 "batch() is for each batch of the loader, once: there is none that it was not called for"
@@ -227,7 +228,7 @@ class ImportanceBatchSampler(Sampler):
         if backend == "gloo":
             own = own.cpu()
         elif backend == "nccl":
-            own = own.cuda()
+            own = own if own.is_cuda else own.cuda()
         parts = [torch.empty_like(own) for _ in range(self._processes)]
         torch.distributed.all_gather(parts, own, group=self._group)
         return torch.stack(parts, 1).flatten(0, 1).cpu()
@@ -243,7 +244,7 @@ class ImportanceBatchSampler(Sampler):
             scale: what the loss was multiplied by besides, above 0, by a GradScaler say. Derivatives that are infinite,
                 for which that leaves a step out, are refused.
         """
-        scale = _arrays.number("scale", scale, 1e-30, math.inf)
+        scale = _arrays.number("scale", scale, 1e-30, 3.4e38)
         if logits.grad is None:
             raise ValueError("logits.grad is None: call logits.retain_grad() before the backward pass")
         if logits.is_complex():
@@ -293,7 +294,7 @@ class ImportanceBatchSampler(Sampler):
         tables = [Table(self._n) for _ in self._tables]
         for table, saved, rng in zip(tables, state["tables"], state["rng"]):
             table.load_state_dict({"table": saved, "rng": rng})
-        replay = deque((index.numpy(), weight.numpy(), first) for index, weight, first in state["ahead"])
+        replay = deque((*(_arrays.array("ahead", part) for part in parts), first) for *parts, first in state["ahead"])
         self._seed, self.epoch, self._drawn, self._step = (state[name] for name in ("seed", "epoch", "drawn", "step"))
         self._tables, self._replay, self._last = tables, replay, None
         self._ahead.clear()

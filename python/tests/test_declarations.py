@@ -61,4 +61,6 @@ def test_every_function_is_used():
     package = pathlib.Path(noisefloor.__file__).parent
     code = "".join(file.read_text() for file in package.rglob("*.py"))
     names = re.findall(r"nf_(\w+)\(", _c.FUNCTIONS)
-    assert len(names) > 20 and [name for name in names if not re.search(rf"(\b|library\.nf_){name}\b", code)] == []
+    # _c.py itself names those it uses without `_c.`, which its linter has to be told.
+    used = r"(_c\.|library\.nf_){0}\b|\b{0}\b.*# noqa: F821"
+    assert len(names) > 20 and [name for name in names if not re.search(used.format(name), code)] == []

@@ -50,6 +50,10 @@ static void errors(void)
         pdf[2] = bad[k];
         CHECK_REFUSED(WEIGHTS(NF_OMIS_BALANCE, 0.0f, 2, 10, 2), k < 2 ? NF_ERR_NOT_FINITE : NF_ERR_RANGE, weight);
     }
+    pdf[2] = 1.01f; /* more than rounding above 1 */
+    CHECK_REFUSED(WEIGHTS(NF_OMIS_BALANCE, 0.0f, 2, 10, 2), NF_ERR_RANGE, weight);
+    pdf[2] = 1.0005f;
+    CHECK_STATUS(WEIGHTS(NF_OMIS_BALANCE, 0.0f, 2, 10, 2), NF_OK);
     pdf[2] = 0.0f;
     CHECK_STATUS(WEIGHTS(NF_OMIS_RIDGE, 0.0f, 2, 10, 2), NF_OK);
     pdf[3] = 0.0f;

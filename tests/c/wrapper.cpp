@@ -172,6 +172,21 @@ static void estimates()
 
 static void images()
 {
+    [[maybe_unused]] const auto surfaces_of =
+        [](auto &&ids) -> decltype(nf::image(2, 2).with_surfaces(std::forward<decltype(ids)>(ids))) { return {2, 2}; };
+    [[maybe_unused]] const auto factors_of =
+        [](auto &&all) -> decltype(nf::image(2, 2).with_factors(std::forward<decltype(all)>(all))) { return {2, 2}; };
+    using ids = std::vector<std::uint32_t>;
+    using values = std::array<float, 4>;
+    static_assert(std::is_invocable_v<decltype(surfaces_of), ids &> &&
+                      std::is_invocable_v<decltype(surfaces_of), nf::span<std::uint32_t>> &&
+                      std::is_invocable_v<decltype(factors_of), const values &> &&
+                      std::is_invocable_v<decltype(factors_of), nf::span<const float>>,
+                  "views and what stays are taken");
+    static_assert(!std::is_invocable_v<decltype(surfaces_of), ids> &&
+                      !std::is_invocable_v<decltype(surfaces_of), const ids> &&
+                      !std::is_invocable_v<decltype(factors_of), values>,
+                  "a temporary array ends first");
     using nf::span;
     using nf::status;
     const nf::config config(2, 2);
@@ -352,6 +367,14 @@ static void tiles()
     static_assert(!std::is_constructible_v<nf::tile_sampler, nf::tile, u32, u32, u32, u32> &&
                       !std::is_constructible_v<nf::tile_sampler, const nf::tile, u32, u32, u32, u32>,
                   "a temporary tile ends first");
+    [[maybe_unused]] const auto tile_of =
+        [](auto &&bytes) -> decltype(nf::tile::from_bytes(std::forward<decltype(bytes)>(bytes))) { return {}; };
+    static_assert(std::is_invocable_v<decltype(tile_of), const std::vector<unsigned char> &> &&
+                      !std::is_invocable_v<decltype(tile_of), std::vector<unsigned char>>,
+                  "a temporary file ends first");
+#ifdef NOISEFLOOR_NO_EXCEPTIONS
+    static_assert(std::is_same_v<decltype(*nf::tile::from_bytes(nullptr, 0)), nf::tile>, "no reference to a temporary");
+#endif
 
     const nf_tile_sampler both[2] = {pixel.state(), child.state()};
     const std::uint32_t dims[2] = {2, 3};
@@ -392,6 +415,7 @@ static void minibatches()
     std::array<std::uint32_t, 8> index{};
     std::array<float, 8> weight{};
     CHECK(CODE(table.draw(rng, index)) == nf::status::state);
+    CHECK(CODE(table.set_uniform_fraction(0.5f)) == nf::status::state);
     SUCCEED(table.init(room, importance));
     CHECK(table.items() == 5 && table.total() == 10.0 && table.importance(3) == 3.0f);
     SUCCEED(table.set_uniform_fraction(0.0f));
@@ -501,6 +525,8 @@ static void gradients()
     CHECK(std::fabs(out[0] - (weight[0] + 2.0f * weight[1]) / 2.0f) < 1e-5f);
     CHECK(state.handle() == static_cast<void *>(room.data()));
     CHECK(CODE(state.estimate(10, pdf, technique, {each, 1}, out)) == nf::status::range);
+    CHECK(CODE(state.estimate(10, {}, {}, {}, out)) == nf::status::no_samples);
+    CHECK(CODE(state.estimate(10, {}, {}, each, out)) == nf::status::range);
     CHECK(CODE(nf::optimal_gradient::create(2, 1, {room.data(), 8})) == nf::status::memory);
     CHECK(CODE(nf::optimal_gradient::create(17, 1, room)) == nf::status::range);
 }

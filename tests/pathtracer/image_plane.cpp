@@ -1,4 +1,5 @@
-// The pixel's footprint, the lens, and motion.
+// The pixel's footprint, the lens, motion, and Sobol points' trees.
+#include "../../examples_c/pathtracer/sobol.hpp"
 #include "scenes.hpp"
 
 using namespace test;
@@ -85,11 +86,25 @@ void motion()
     expect(hits > 1000, "motion: too few rays hit anything");
 }
 
+// A sampler's trees, whose keys are `golden` apart, share no bits.
+void trees()
+{
+    Mean same;
+    for (uint64_t k = 0; k < 10000; ++k) {
+        const uint64_t key = mix(k);
+        const demo::Tree tree(key), next(key + golden);
+        for (uint32_t node = 0; node < 64; ++node)
+            same.add(tree.flip(64 + node) == next.flip(node));
+    }
+    expect_near(same.mean(), 0.5, 5 * same.error(), "Sobol points: a bit of one tree and of the next");
+}
+
 } // namespace
 
 int main()
 {
     footprints();
+    trees();
     lens();
     motion();
     return finish();

@@ -99,6 +99,22 @@ void environment_density()
     expect_near(sum, 1, 1e-4, "environment: the density's integral over the sphere");
 }
 
+// What is behind a sun, in its row and in rows below, is sampled too.
+void sky_with_a_sun()
+{
+    constexpr uint32_t width = 64, height = 32;
+    std::vector<Color> pixels(width * height, Color{1, 1, 1});
+    pixels[10 * width + 5] = {1e10f, 1e10f, 1e10f};
+    Environment sky(width, height, pixels);
+    for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x) {
+            float theta = pi * (static_cast<float>(y) + 0.5f) / height;
+            float phi = 2 * pi * (static_cast<float>(x) + 0.5f) / width;
+            Vector d{std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi)};
+            expect(sky.pdf(d) > 0, "environment: nothing is sampled behind the sun");
+        }
+}
+
 } // namespace
 
 int main()
@@ -110,5 +126,6 @@ int main()
         densities(lit, bvh, from);
     }
     environment_density();
+    sky_with_a_sun();
     return finish();
 }

@@ -14,7 +14,6 @@
 
 #include "../../examples_c/pathtracer/integrand.hpp"
 #include <cstdio>
-#include <cstdlib>
 #include <stdexcept>
 #include <string>
 

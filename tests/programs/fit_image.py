@@ -68,6 +68,7 @@ def refusals(program):
         ("--steps", ["--steps", "0"]),
         ("--batch", ["--batch", "40"]),
         ("nonsense", ["--methods", "is,nonsense"]),
+        ("twice", ["--methods", "is,is"]),
         ("--methods", ["--methods", ""]),
         ("--rate", ["--rate", "nan"]),
     ]:

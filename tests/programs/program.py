@@ -93,7 +93,10 @@ class PathTracer(Program):
 
     def refuses_each(self, *wrong):
         for options in wrong:
-            require(self.draw(*options.split()).returncode != 0, f"{self.name} accepts `{options}`")
+            done = self.draw(*options.split())
+            last = (done.stderr.splitlines() or [""])[-1]
+            refused = done.returncode == 1 and last.startswith(f"{self.name}: ")
+            require(refused, f"{self.name} {options}: exit status {done.returncode}, and it says `{last}`")
 
     def picture(self, name):
         return self.folder / f"picture.{name}.pfm"

@@ -53,8 +53,8 @@ def variances(program):
 
 
 def small(program):
-    few = ["--data", DATA, *"--hidden 9,6 --epochs 2 --modes".split(), MODES]
-    program.run(*few, *"--rows 3 --epsilon 0.001 --stratified".split())
+    few = ["--data", DATA, *"--hidden 9,6 --epochs 2".split()]
+    program.run(*few, "--modes", MODES, *"--rows 3 --epsilon 0.001 --stratified".split())
     program.run(*few, "--variance", program.folder / "small.csv")
 
 
@@ -75,6 +75,8 @@ def refusals(program):
         ("--techniques", f"--data {DATA} --techniques 3"),
         ("distributions", f"--data {DATA} --mode omis --batch 4"),
         ("nonsense", f"--data {DATA} --optimizer nonsense"),
+        *((name, f"--data {DATA} --variance x {name} 2") for name in ["--batch", "--seeds", "--rows"]),
+        ("--modes", f"--data {DATA} --variance x --modes uniform"),
         ("nowhere/nothing.csv", f"--data {DATA} --epochs 1 --variance nowhere/nothing.csv"),
     ]:
         program.refuses(word, *options.split())

@@ -3,6 +3,13 @@
 use crate::random::SplitMix64;
 use noisefloor::tile::{Header, Shape, quantize};
 
+/// CRC-32 of IEEE 802.3, bit by bit: the checksum of tiles and of saved tables.
+pub fn crc(bytes: impl IntoIterator<Item = u8>) -> u32 {
+    !bytes.into_iter().fold(u32::MAX, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ if crc & 1 == 1 { 0xedb8_8320 } else { 0 })
+    })
+}
+
 /// The bytes of a file of this shape, each coordinate by `value(frame, pixel, sample, dim)`.
 pub fn file(shape: Shape, mut value: impl FnMut(u32, u32, u32, u32) -> f32) -> Vec<u8> {
     let mut payload = Vec::new();

@@ -201,9 +201,9 @@ fn algorithm_5_as_printed_is_too_small_by_the_count() {
 #[test]
 fn gradients_are_the_weights() {
     let mut rng = Rng::seed(4);
-    // Every remainder of blocks and rows.
-    for (techniques, parameters, batch) in [(1, 1, 1), (2, 7, 3), (3, 255, 4), (4, 256, 5), (5, 257, 6), (10, 1000, 64)]
-    {
+    // Every remainder of blocks and rows, and of several groups.
+    let shapes = [(1, 1, 1), (2, 7, 3), (3, 255, 4), (4, 256, 5), (5, 257, 6), (10, 1000, 64), (3, 520, 130)];
+    for (techniques, parameters, batch) in shapes {
         let problem = random_problem(parameters as u64, techniques, 80, parameters);
         let counts: Vec<usize> = (0..techniques).map(|j| (batch + j) / techniques).collect();
         let mut state = gradient(techniques, parameters);
@@ -267,7 +267,7 @@ fn averages_do_not_drift() {
     }
 }
 
-/// Against weighted averages in f64 of every sum, with batches of different counts.
+/// Against weighted averages in f64 of every sum, with batches of different counts, one group of samples or more.
 #[test]
 fn momentum_is_the_oracle() {
     let mut rng = Rng::seed(5);
@@ -279,7 +279,7 @@ fn momentum_is_the_oracle() {
         let (mut n, mut weight) = (vec![0.0; 3], 0.0);
         let (mut balance, mut b) = (vec![0.0; parameters], vec![vec![0.0; parameters]; 3]);
         for step in 0..12 {
-            let drawn = problem.draw(&[3 + step % 2, 4, 2 + step % 3], &mut rng);
+            let drawn = problem.draw(&[3 + step % 2, 4, if step % 5 == 3 { 130 } else { 2 + step % 3 }], &mut rng);
             let ratios = ratios(&drawn);
             let (new_a, new_q) = matrix_and_sum(&ratios);
             let beta64 = f64::from(beta);
@@ -460,6 +460,11 @@ fn batches_refuse() {
     // The technique's own probability is 0, or the technique does not exist.
     refuse(1, 2, &[0.0, 0.25, 0.125, 0.5], &technique, Error::Range);
     refuse(1, 2, &[-0.0, 0.25, 0.125, 0.5], &technique, Error::Range);
+    // More than rounding above 1, where a technique drew something.
+    refuse(1, 2, &[0.5, 1.01, 0.125, 0.5], &technique, Error::Range);
+    refuse(1, 2, &[0.5, 0.25, 0.125, 1.01], &technique, Error::Range);
+    assert!(Batch::new(1, 2, &[0.5, 1.0005, 0.125, 1.0005], &technique).is_ok());
+    assert!(Batch::new(1, 2, &[0.5, 9.0, 0.125, 9.0], &[0, 0]).is_ok());
     refuse(1, 2, &pdf, &[0, 2], Error::Range);
     refuse(1, 2, &pdf, &[0, u32::MAX], Error::Range);
 }

@@ -9,6 +9,7 @@ use noisefloor::minibatch::table::{
 };
 use noisefloor::rng::Rng;
 use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::tile::crc;
 
 #[test]
 fn memory_per_item() {
@@ -278,9 +279,26 @@ fn damaged_bytes_are_refused() {
     assert_eq!(load(&[&good[..], &[0]].concat()), Err(Error::Length));
     let small = Borrowed::load(&mut [0.0; 32], &mut [0; 16], &good).map(|table| table.items());
     assert_eq!(small, Err(Error::Memory));
-    assert_eq!(saved_items(&good[..15]), Err(Error::Length));
+    assert_eq!((saved_items(&good[..15]), saved_items(b"PK\x03\x04")), (Err(Error::Length), Err(Error::Foreign)));
     // No library has written version 0, as after bit 64, nor a table of no items.
     assert_eq!(load(&[&good[..12], &[0; 4], &good[16..]].concat()), Err(Error::Corrupt));
+}
+
+/// Bytes that are whole, at a scale that a table of these importances never has: it draws the same, all the same.
+#[test]
+fn another_scale_loses_nothing() {
+    let importance: Vec<f32> = (0..32).map(|item| if item < 16 { 1e6 } else { 1.0 }).collect();
+    let mut bytes = saved(&table(&importance, 0.2));
+    for scale in [2f64.powi(-300), 1.0, 2f64.powi(300)] {
+        bytes[16..24].copy_from_slice(&scale.to_le_bytes());
+        let checksum = crc(bytes[..28].iter().chain(&bytes[32..]).copied());
+        bytes[28..32].copy_from_slice(&checksum.to_le_bytes());
+        let (q, sums) = memory(32);
+        let table = Table::load(q, sums, &bytes).unwrap();
+        let p = [0, 31].map(|item| f64::from(table.probability(item)));
+        let expected = [0, 31].map(|item| 0.8 * f64::from(importance[item]) / 16_000_016.0 + 0.2 / 32.0);
+        assert!(p.iter().zip(&expected).all(|(p, e)| (p / e - 1.0).abs() < 1e-5), "{scale:e}: {p:?}, not {expected:?}");
+    }
 }
 
 /// A sign stands for items that are taken out: none may come in from outside.

@@ -3,6 +3,7 @@
 use noisefloor::Error;
 use noisefloor::control_variate::Config;
 use noisefloor::recommend::{Method, Recommendation, Sampling, recommend};
+use noisefloor_tests::tile::crc;
 
 const BOTH: [Sampling; 2] = [Sampling::Independent, Sampling::Stratified];
 
@@ -108,6 +109,21 @@ fn examples() {
     // Tiles of as many samples; beyond 16, a sequence.
     let tile = |samples| recommend(2, samples, Sampling::Stratified, true, f32::INFINITY).unwrap().tile_samples;
     assert_eq!([1, 3, 4, 15, 16, 63, 64, 4096].map(tile), [1, 1, 4, 4, 16, 16, 1, 1]);
+}
+
+/// The tables, number by number: after a new measurement the sum here is another.
+#[test]
+fn pinned() {
+    let mut bytes = Vec::new();
+    for (dims, samples) in [1, 2, 4, 5, 8, 15].into_iter().flat_map(|dims| [1, 4, 16, 64, 256].map(|n| (dims, n))) {
+        for (sampling, share) in BOTH.into_iter().flat_map(|sampling| [(sampling, false), (sampling, true)]) {
+            let of = recommend(dims, samples, sampling, share, f32::INFINITY).unwrap();
+            let counts = [of.method as usize, of.config.order, of.image_stride, of.tile_samples, of.tile_dims];
+            bytes.extend(counts.map(|count| count as u8));
+            bytes.extend([of.error, of.filtered_error, of.cost, of.pays_from].map(f32::to_le_bytes).as_flattened());
+        }
+    }
+    assert_eq!(crc(bytes), 0xebf7_2911);
 }
 
 /// Dims are rounded up, samples down, to what was measured.

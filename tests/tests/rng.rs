@@ -15,6 +15,7 @@ fn published_values() {
 #[test]
 fn an_even_increment_counts_as_odd() {
     let (mut even, mut odd) = (Rng { state: 5, increment: 6 }, Rng { state: 5, increment: 7 });
+    assert!(even == odd && even != Rng { state: 5, increment: 8 } && even != Rng { state: 6, increment: 6 });
     for _ in 0..10 {
         assert_eq!(even.next_u32(), odd.next_u32());
     }

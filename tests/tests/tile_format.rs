@@ -4,17 +4,10 @@ use noisefloor::Error;
 use noisefloor::tile::{
     Builtin, HEADER_BYTES, Header, KERNEL_BYTES, MAX_DIMS, MAX_FRAMES, MAX_SIZE, MAX_SPP, Shape, Tile, quantize,
 };
-use noisefloor_tests::tile::{file, noise};
+use noisefloor_tests::tile::{crc, file, noise};
 use proptest::prelude::*;
 
 const SHAPE: Shape = Shape { size: 4, spp: 2, dims: 3, frames: 2, bits: 16, progressive: true };
-
-/// CRC-32 of IEEE 802.3, bit by bit.
-fn crc(bytes: impl IntoIterator<Item = u8>) -> u32 {
-    !bytes.into_iter().fold(u32::MAX, |crc, byte| {
-        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ if crc & 1 == 1 { 0xedb8_8320 } else { 0 })
-    })
-}
 
 /// Puts the checksum right after a deliberate change.
 fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {

@@ -253,6 +253,12 @@ fn densities_outside_and_degenerate() {
     assert_eq!(cosine_hemisphere_pdf(up), std::f32::consts::FRAC_1_PI);
     assert_eq!(uniform_cone_pdf(level, 0.5), 0.0);
     assert_eq!(concentric_disc_pdf(Vec2::ONE), 0.0);
+    // Just outside: what is tolerated there is rounding.
+    assert_eq!(concentric_disc_pdf(1.001 * Vec2::X), 0.0);
+    for cos_max in [0.5_f32, 0.99] {
+        let z = cos_max - 1e-5;
+        assert_eq!(uniform_cone_pdf(Vec3::new((1.0 - z * z).sqrt(), 0.0, z), cos_max), 0.0);
+    }
     // A cone of no width is a delta distribution, as is a triangle without area.
     for cos_max in [1.0, 2.0, f32::NAN] {
         assert_eq!(uniform_cone(Vec2::splat(0.7), cos_max), up);
@@ -263,7 +269,7 @@ fn densities_outside_and_degenerate() {
     assert_eq!(uniform_triangle_pdf([Vec3::NAN, up, level]), 0.0);
     assert_eq!(uniform_triangle_pdf([Vec3::INFINITY, up, level]), 0.0);
     // What is no direction has no density, and still an inverse in the square.
-    for v in [Vec3::ZERO, Vec3::NAN, Vec3::splat(f32::MAX), Vec3::INFINITY, 2.0 * up] {
+    for v in [Vec3::ZERO, Vec3::NAN, Vec3::splat(f32::MAX), Vec3::INFINITY, 2.0 * up, 1.001 * up] {
         for d in &DIRECTIONS {
             assert_eq!((d.pdf)(v), 0.0, "{} of {v}", d.name);
             assert!(inside((d.inverse)(v)), "{} of {v}: {}", d.name, (d.inverse)(v));

@@ -16,8 +16,17 @@ const RISC_V_32: (&str, &str) = ("LDEMULATION", "elf32lriscv");
 /// capi/cmake/one_object.sh, which the CMake build uses too, says why cargo's own archive is not the one.
 pub fn build() -> Result<PathBuf> {
     tools::packages(&tools::C)?;
-    run::compile(run::cargo().args(["build", "--release", "--package", "noisefloor-capi"]))?;
-    one_object(&paths::target().join("release/libnoisefloor.a"), &paths::output(), "")
+    let host = host()?;
+    // As capi/cmake/target.cmake has it, which then finds it done.
+    let kind = ["rustc", "--release", "--lib", "--package", "noisefloor-capi", "--crate-type", "staticlib"];
+    run::compile(run::cargo().args(kind).args(["--target", &host]))?;
+    one_object(&paths::target().join(host).join("release/libnoisefloor.a"), &paths::output(), "")
+}
+
+/// This machine, as Rust calls it.
+fn host() -> Result<String> {
+    let version = run::read(run::cargo().arg("-vV"))?;
+    version.lines().find_map(|line| line.strip_prefix("host: ")).map(str::to_owned).context("cargo names no host")
 }
 
 /// Of capi/CMakeLists.txt, so that it has what cargo made already.

@@ -57,7 +57,8 @@ const SCRAMBLED: u32 = 1;
 const WHITE: u32 = 2;
 
 impl Sampler {
-    /// Sample `index` of pixel (x, y) in `frame`, any values of each: pixels repeat every [`table::SIZE`].
+    /// Sample `index` of pixel (x, y) in `frame`, any values of each. The root's numbers in frame 0 repeat every
+    /// [`table::SIZE`] pixels; elsewhere a pixel's samples are then in another order.
     ///
     /// The samples of a pixel are one sequence, best at powers of two; take any number, and stop where you like. Each
     /// frame is the table at another place, unrelated to the others. Where frames are averaged, by a viewer or by TAA,
@@ -128,8 +129,10 @@ impl Sampler {
     #[inline]
     pub fn draw_samples(&self, dims: usize, stride: usize, u: &mut [f32]) {
         if (1..=4).contains(&dims) {
-            for (k, u) in (0..).zip(u.chunks_mut(stride.max(dims))) {
-                self.moved(0, 0, k).draw_into(first_mut(u, dims));
+            let mut sample = *self;
+            for u in u.chunks_mut(stride.max(dims)) {
+                sample.draw_into(first_mut(u, dims));
+                sample = sample.moved(0, 0, 1);
             }
         }
     }

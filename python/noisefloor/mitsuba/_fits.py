@@ -16,11 +16,12 @@ from ._sampler import option
 def _rays(sensor, position, sampler=None):
     """Rays through places of the film, with the sampler's numbers for lens and shutter, or the middle of both."""
     film = sensor.film()
-    on_lens, time = mi.Point2f(0.5), mi.Float(sensor.shutter_open())
+    on_lens, opened = mi.Point2f(0.5), 0.5
     if sampler and sensor.needs_aperture_sample():
         on_lens = sampler.next_2d()
     if sampler and sensor.shutter_open_time() > 0:
-        time += sampler.next_1d() * sensor.shutter_open_time()
+        opened = sampler.next_1d()
+    time = mi.Float(sensor.shutter_open() + opened * sensor.shutter_open_time())
     place = (position - mi.ScalarPoint2f(film.crop_offset())) / mi.ScalarPoint2f(film.crop_size())
     return sensor.sample_ray_differential(time, 0.5, place, on_lens)
 
@@ -142,6 +143,9 @@ def kind():
                 value = numpy.where(wrong[..., None], numpy.float32(0), value)
             valid = _of_all(valid, width * height * spp).reshape(height, width, spp)
             return value, valid.mean(-1, dtype=numpy.float32)
+
+        def sample(self, *_, **__):
+            raise ValueError("noisefloor_fits: renders pictures alone; it holds other integrators, and is in none")
 
         def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
             sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor

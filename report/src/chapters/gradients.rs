@@ -73,10 +73,11 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
         let setting = |what: &str| setting(what).with_context(|| format!("gradients.toml has no {what} of {name}"));
         let (rate, batch, hidden) = (&setting("rate")?, setting("batch")?, setting("hidden")?.replace('-', ","));
         let train = |epochs: &str, more: &[&str]| {
-            let network = ["--data", &data, "--epochs", epochs, "--rate", rate, "--batch", &batch, "--hidden", &hidden];
+            let network = ["--data", &data, "--epochs", epochs, "--rate", rate, "--hidden", &hidden];
             run_one(&programs["train_mlp.c"], name, &[&network[..], more].concat(), &bar)
         };
-        let (csv, said) = train(&network.epochs, &["--modes", &MODES.join(","), "--seeds", &network.seeds])?;
+        let (csv, said) =
+            train(&network.epochs, &["--batch", &batch, "--modes", &MODES.join(","), "--seeds", &network.seeds])?;
         let plot = error_plot(network, rate, &Table::parse(&csv, name)?)?;
         report.output.write_text(&format!("{}-{name}-time.svg", report.names[0]), &plot)?;
         tables.insert(name.clone(), summary(&said)?);

@@ -8,7 +8,8 @@ use crate::real::power_of_two;
 use crate::rows::{at, first};
 use core::marker::PhantomData;
 
-/// The uniform fraction of a new table: no weight above 5. Measured best on classification (.2 to .5 are close).
+/// The uniform fraction of a new table: no weight 1 / (N p) above 5. Measured best on classification (.2 to .5 are
+/// close).
 pub const DEFAULT_UNIFORM_FRACTION: f32 = 0.2;
 
 /// How many f32 of importances a table for so many items needs: `items`, rounded up to blocks of 16. 0 if no memory has
@@ -112,8 +113,9 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
 }
 
 impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
-    /// Sets the part of draws that are uniform over the items, 0..=1: no weight is above its reciprocal. 0 draws by
-    /// importance alone, 1 uniformly. Small fractions let weights explode when an importance has become out of date.
+    /// Sets the part of draws that are uniform over the items, 0..=1: no weight 1 / (N p) is above its reciprocal, none
+    /// of B draws of [`Table::draw_distinct`] above that and (B - 1) / N. 0 draws by importance alone, 1 uniformly.
+    /// Small fractions let weights explode when an importance has become out of date.
     ///
     /// Errors: [`Error::NotFinite`], [`Error::Range`].
     pub fn set_uniform_fraction(&mut self, fraction: f32) -> Result<(), Error> {

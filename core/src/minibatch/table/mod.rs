@@ -9,7 +9,7 @@
 //! near 2^50, and changed when the sum leaves its range: a block's weight is its sum rounded to 1 / 2^50 or so of all,
 //! or, once importances have shrunk, to 2^-17 of the mean block's, and never to 0. Within a block f64 decides. What
 //! [`Table::probability`] says is the probability of these rounded weights, so that estimates are unbiased, down to
-//! probabilities of 2^-53 within a block.
+//! probabilities of 2^-53 within a block, and of 2^-64 in all.
 
 mod distinct;
 mod draw;

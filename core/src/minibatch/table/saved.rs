@@ -48,12 +48,10 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
 /// Errors: [`Error::Foreign`] for other bytes, [`Error::Version`] for a newer format, [`Error::Length`],
 /// [`Error::Corrupt`] for a version or a number of items that no table has.
 pub fn saved_items(bytes: &[u8]) -> Result<u32, Error> {
-    let (magic, version) = (field(bytes, 0)?, u32::from_le_bytes(field(bytes, 8)?));
-    let items = u32::from_le_bytes(field(bytes, 12)?);
-    // Comparing arrays may call bcmp, which a freestanding target need not have.
-    if u64::from_le_bytes(magic) != u64::from_le_bytes(MAGIC) {
+    if bytes.iter().zip(&MAGIC).any(|(byte, magic)| byte != magic) {
         return Err(Error::Foreign);
     }
+    let (version, items) = (u32::from_le_bytes(field(bytes, 8)?), u32::from_le_bytes(field(bytes, 12)?));
     match (version, items) {
         (0, _) | (VERSION, 0) => Err(Error::Corrupt),
         (VERSION, _) if bytes.len() == saved_len(items) => Ok(items),
@@ -70,10 +68,9 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     pub fn load(importance: I, sums: S, bytes: &[u8]) -> Result<Self, Error> {
         let mut table = Table::resume(importance, sums, check(bytes)?)?;
         table.clear().iter_mut().zip(values(bytes)).for_each(|(to, from)| *to = from);
-        if !table.build::<Portable>() {
-            // No library has saved this scale with these importances, but nothing is lost.
-            table.rebuild();
-        }
+        // A scale that no library has saved with these importances loses nothing.
+        let in_range = table.build::<Portable>();
+        table.restore_scale(in_range);
         Ok(table)
     }
 }

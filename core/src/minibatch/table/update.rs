@@ -75,7 +75,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
         } else {
             let mut in_range = true;
             for (chunk, start) in importance.chunks(CHUNK).zip((first..).step_by(CHUNK)) {
-                in_range &= self.change((start..).zip(chunk.iter().map(|&q| move |_| q + 0.0)));
+                in_range &= self.change((start..=u32::MAX).zip(chunk.iter().map(|&q| move |_| q + 0.0)));
             }
             self.restore_scale(in_range);
         }
