@@ -105,6 +105,9 @@ pub fn check<'a, 'b>(
     for path in paths {
         let place = place(path)?;
         let stream = is_stream(&place);
+        if stream {
+            check_stream(&place).map_err(Error::io(path))?;
+        }
         if !stream && inputs.contains(&place) {
             return Err(Error::Input(format!(
                 "{} is an input, which would be replaced: give what is written another name",
@@ -199,6 +202,20 @@ const STANDARD_ERROR: &str = "/dev/stderr";
 
 fn is_standard_output(path: &Path) -> bool {
     path == "-" || path == STANDARD_OUTPUT || path == "/dev/fd/1"
+}
+
+/// Whether a pipe or a device is there, and can be opened. A pipe is not opened: that waits until somebody reads it.
+fn check_stream(path: &Path) -> std::io::Result<()> {
+    #[cfg(unix)]
+    if !is_standard_output(path) && path != STANDARD_ERROR {
+        use std::os::unix::fs::FileTypeExt;
+        if !fs::metadata(path)?.file_type().is_fifo() {
+            OpenOptions::new().write(true).open(path)?;
+        }
+    }
+    #[cfg(not(unix))]
+    let _ = path;
+    Ok(())
 }
 
 fn write_stream(path: &Path, bytes: &[u8]) -> std::io::Result<()> {

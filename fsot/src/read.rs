@@ -196,13 +196,13 @@ pub fn density(bytes: &[u8], path: &Path, points: usize, invert: bool) -> Result
 
 /// A point set by its content: JSON, CSV (rows with commas) or text (columns separated by spaces), as
 /// [`Format`](crate::export::points::Format) describes them. A first row that holds no number names the columns; one
-/// named `class` holds each point's class. What follows a `#` is a comment.
+/// named `class` holds each point's class. What follows a `#` is a comment; in CSV, a line that begins with it.
 ///
 /// # Errors
 /// As [`text`]; a value that is no finite number; rows of different lengths; no points; more than 8 coordinates.
 pub fn points(path: &Path) -> Result<Table> {
     let text = &text(path, "a point set")?;
-    let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
+    let first = text.lines().map(uncommented).find(|line| !line.is_empty()).unwrap_or_default();
     let table = if first.starts_with('{') {
         json(text)
     } else if first.contains(',') {
@@ -255,9 +255,13 @@ fn csv(text: &str) -> std::result::Result<Table, String> {
     wrong.map_or(table, Err)
 }
 
+/// What a line says before a comment.
+fn uncommented(line: &str) -> &str {
+    line.split('#').next().unwrap_or_default().trim()
+}
+
 fn lines(text: &str) -> std::result::Result<Table, String> {
-    let content =
-        |line: &str| line.split('#').next().unwrap_or_default().split_whitespace().map(str::to_owned).collect();
+    let content = |line: &str| uncommented(line).split_whitespace().map(str::to_owned).collect();
     let lines = text.lines().zip(1..).map(|(line, number)| (number, content(line)));
     let lines = lines.filter(|(_, words): &(u64, Vec<String>)| !words.is_empty());
     let names = text.lines().find_map(|line| line.strip_prefix("# classes:"));

@@ -2,8 +2,8 @@
 
 /// An optimisation that runs step by step.
 ///
-/// Its whole state is the number of steps done and the coordinates: an optimisation made from the same problem, given
-/// both by [`restore`](Optimization::restore), continues with the same bits.
+/// Its whole state is the number of steps done and what [`coordinates`](Optimization::coordinates) has: an optimisation
+/// made from the same problem, given both by [`restore`](Optimization::restore), continues with the same bits.
 pub trait Optimization {
     /// The steps that it will take in all.
     fn iterations(&self) -> u64;
@@ -11,11 +11,10 @@ pub trait Optimization {
     /// The steps that it has taken.
     fn iteration(&self) -> u64;
 
-    /// Takes one step, on the threads of the current rayon pool. Returns the mean squared sliced Wasserstein distance
-    /// of its slices before the step.
+    /// Takes one step, on the threads of the current rayon pool. Returns what is being minimised, before the step.
     fn step(&mut self) -> f64;
 
-    /// All coordinates being optimised.
+    /// The state: coordinates, and what else a sampler remembers.
     fn coordinates(&self) -> &[f32];
 
     /// Continues from a saved state. Returns false, and changes nothing, if the state is not one of this problem's

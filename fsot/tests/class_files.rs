@@ -86,6 +86,7 @@ fn wrong_files() {
         (one("{ staircase = [{ to = 0.5, value = 1.5 }] }"), "value 1.5"),
         (one("{ tabulated = [0.5, -0.5] }"), "-0.5"),
         (one("{ gaussian = { center = [0.5], sigma = -1.0 } }"), "sigma -1"),
+        (one("{ gaussian = { center = [0.5], sigma = 1e-30 } }"), "at least 1e-18"),
         (format!("{}weight = -2.0", one("\"constant\"")), "weight is -2"),
         (format!("{}colour = 1", one("\"constant\"")), "colour"),
         (format!("{}target = \"circle\"", one("\"constant\"")), "circle"),

@@ -243,10 +243,10 @@ fn points_after_a_byte_order_mark() {
 fn more_memory_than_there_is() {
     let place = Place::new();
     for arguments in [
-        "points -n 268435456 -d 8",
-        "points -n 268435456 --progressive 3",
-        "tile --size 1024 --spp 256 -d 1 --threads 2",
+        "points -n 268435456 -d 8 --out p.txt",
+        "points -n 268435456 --progressive 3 --out p.txt",
+        "tile --size 1024 --spp 256 -d 1 --threads 2 --out t.nft",
     ] {
-        place.refuse(&format!("{arguments} --out p.nft"), "bytes of memory");
+        place.refuse(arguments, "bytes of memory");
     }
 }

@@ -39,6 +39,7 @@ fn numbers_out_of_range() {
         ("tile --kernel gaussian:0 --out t.nft", "Gaussian"),
         ("tile --kernel sinc --out t.nft", "not a kernel"),
         ("tile --size 16 --temporal 1 --temporal-kernel mantiuk --out t.nft", "frames"),
+        ("tile --size 16 --temporal 2 --temporal-kernel mantiuk --out t.nft", "the animation has 2"),
         ("tile --size 16 --temporal 4 --temporal-kernel ema:2 --out t.nft", "ema:2"),
         ("tile --size 16 --temporal 4 --out t.nft", "--temporal-kernel"),
         ("tile --size 16 --bits 12 --out t.nft", "8 or 16"),
@@ -172,6 +173,10 @@ fn outputs_that_are_inputs() {
 fn a_full_disk_leaves_nothing() {
     let place = Place::new();
     place.refuse("points -n 10 --out /dev/full --iterations 3", "No space left");
+    // One that is not open: before the work, whose cost would be said.
+    let closed = "points -n 10 --out /dev/fd/97 --iterations 3";
+    place.refuse(closed, "/dev/fd/97: ");
+    assert_eq!(error(&place.run(closed)).lines().count(), 1);
 
     // No file may grow beyond 8 blocks, and the signal that would end the program is ignored: writes fail half way.
     place.write("p.txt", "old");

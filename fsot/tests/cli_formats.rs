@@ -50,6 +50,7 @@ fn foreign_text_is_read() {
         "0.25 0.5\n0.75 1\n",
         "# x y\r\n.25\t.5\r\n\r\n7.5e-1 1 # last\r\n",
         "x y\n.25 .5\n.75 1",
+        "0.25 0.5 # a, b\n0.75 1\n",
         "a, b\n.25, .5\n.75, 1\n",
     ];
     for text in texts {
@@ -114,6 +115,11 @@ fn source_code_compiles_and_holds_the_numbers() {
     let folder = tempfile::tempdir().unwrap();
     let payload: Vec<u8> = (0..64u16).flat_map(|v| (v * 1000).to_le_bytes()).collect();
     let view = view_of([4, 2, 2, 1, 16], &payload);
+    for (name, array) in [("linux", "tile_linux"), ("UINTPTR_T", "tile_uintptr_t"), ("while", "tile_while"), ("t", "t")]
+    {
+        let text = String::from_utf8(tile::c_header(&view, name).unwrap()).unwrap();
+        assert!(text.contains(&format!("static const uint16_t {array}[64] = {{")), "{text}");
+    }
     let run = |command: &mut Command| assert!(command.current_dir(folder.path()).status().unwrap().success());
     let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
 

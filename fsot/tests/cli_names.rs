@@ -54,11 +54,21 @@ fn pictures_end_in_what_they_are() {
         ("points -n 9 --out o.txt --png p.svg", "p.svg would be PNG"),
         ("points -n 9 --out o.txt --svg p.png", "p.png would be SVG"),
         ("points -n 9 --out p.png", "p.png would be a table of points, not a picture"),
+        ("points -n 9 --out t.nft", "t.nft would be a table of points, not a tile"),
+        ("points -n 9 --out o.txt --png t.nft", "t.nft would be PNG, not nft"),
         ("place -n 9 --out o.csv --png p.exr", "p.exr would be PNG"),
         ("stipple in.png -n 9 --out o.png --svg p.png", "p.png would be SVG"),
         ("stipple in.png -n 9 --out o.png --points p.png", "p.png would be a table of points"),
     ] {
         place.refuse(arguments, message);
+    }
+}
+
+#[test]
+fn a_preset_of_classes_is_no_file() {
+    let place = Place::new();
+    for _ in 0..2 {
+        place.succeed("points -n 9 --iterations 1 --classes ramp --quiet --out ramp");
     }
 }
 
@@ -69,6 +79,7 @@ fn an_export_is_not_named_like_a_tile_or_another_picture() {
     for (format, name, message) in [
         ("raw", "t.nft", "t.nft is the name of a tile: give the raw file another"),
         ("png", "t.nft", "t.nft is the name of a tile"),
+        ("raw", "t.png", "t.png would be the raw file, not png: give it another ending"),
         ("png", "t.exr", "t.exr would be PNG, not exr: end its name in .png"),
         ("exr", "t.png", "t.png would be EXR"),
     ] {

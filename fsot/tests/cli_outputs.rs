@@ -9,6 +9,7 @@ use fsot::output::Outputs;
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::sync::Barrier;
+use std::time::Duration;
 
 /// Names of temporary files.
 fn temporary(place: &Place) -> Vec<String> {
@@ -152,4 +153,18 @@ fn a_link_to_what_does_not_exist_is_followed() {
     symlink("state", place.path("p.checkpoint")).unwrap();
     place.succeed(&format!("{points} p"));
     assert!(place.path("p.checkpoint").is_symlink() && !place.path("state").exists());
+}
+
+/// A report may take more memory than there is, and long: the points are there before.
+#[test]
+fn points_are_in_place_before_their_report() {
+    let place = Place::new();
+    let mut child = place.start("points -n 400000 --iterations 1 --out p.txt");
+    while !place.path("p.txt").exists() {
+        assert!(child.try_wait().unwrap().is_none());
+    }
+    std::thread::sleep(Duration::from_millis(100));
+    child.kill().unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.stdout.is_empty(), "{}", String::from_utf8_lossy(&output.stdout));
 }

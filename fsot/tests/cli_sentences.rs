@@ -32,7 +32,7 @@ fn one_is_singular() {
         "stipple --frames in.png --window 1 --step 1 --iterations 1 --out s.png",
         "stipple --frames in.png --window 1 --step 1 -n 2 --out s.png",
         "tile --size 16 -d 1 --iterations 1 --integrands 1 --out t.nft",
-        "tile --size 16 --temporal 2 --temporal-kernel mantiuk --out t.nft",
+        "tile --size 16 --temporal 2 --temporal-kernel ema:0.1 --out t.nft",
         "info",
         "info t.nft",
         "measure one.txt",

@@ -6,6 +6,7 @@ use serde_json::Value;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 fn fsot(arguments: &[&str]) -> Output {
@@ -91,6 +92,22 @@ fn measures_points_classes_and_tiles() {
     assert_eq!(tile["temporal"][0]["alpha"], 0.5);
 }
 
+/// As many classes as points: in seconds, and a report that ends.
+#[test]
+fn classes_without_end_are_left_out() {
+    let folder = TempDir::new().unwrap();
+    let rows: String = (0..100_000).map(|i| format!("{0},{0},{i}\n", i as f32 / 100_000.0)).collect();
+    let path = file(&folder, "p.csv", &("x,y,class\n".to_owned() + &rows));
+    let start = Instant::now();
+    let classes = fsot::read::points(Path::new(&path)).unwrap().classes.unwrap();
+    assert_eq!((classes.names.len(), classes.index[99_999], &classes.names[99_999][..]), (100_000, 99_999, "99999"));
+    assert!(start.elapsed() < Duration::from_secs(5));
+    let rows: String = (0..300).map(|i| format!("{0},{0},{i}\n", i as f32 / 300.0)).collect();
+    let path = file(&folder, "q.csv", &("x,y,class\n".to_owned() + &rows));
+    let said = succeed(&["measure", "--quick", &path]);
+    assert!(said.contains("class 255\n") && said.ends_with("q.csv: 44 more classes are left out\n"), "{said}");
+}
+
 #[test]
 fn prints_and_draws_errors_of_prefixes() {
     let folder = TempDir::new().unwrap();
@@ -160,6 +177,8 @@ fn bad_input_is_refused_and_nothing_written() {
     fail(&folder, &["measure", "--scenes", "/nowhere", "--integrands", "3"], &["--integrands"]);
     fail(&folder, &["measure", "--scenes", "/nowhere", "--ema", "7"], &["--ema"]);
     fail(&folder, &["measure", &good, "--ema", "0.5", "--quick"], &["for tiles, and there is none"]);
+    fail(&folder, &["measure", &good, "--integrands", "9"], &["--integrands is for --prefix and tiles"]);
+    fail(&folder, &["measure", &good, "--size", "8", "--quick"], &["--quick is for point sets, and there is none"]);
     fail(&folder, &["measure", &good, "--prefix", "--quick"], &["--quick"]);
     fail(&folder, &["measure", &semicolons], &["semicolons.csv holds no points: give rows of numbers"]);
     fail(&folder, &["measure", &empty], &["empty.txt"]);
@@ -173,6 +192,8 @@ fn bad_input_is_refused_and_nothing_written() {
     fail(&folder, &["spectrum", "--out", out, &good, &more], &["as many points"]);
     fail(&folder, &["spectrum", "--out", out, "--axes", "1", "3", &good], &["1 and 3 of 2"]);
     fail(&folder, &["spectrum", "--out", out, "--axes", "2", "2", &good], &["different coordinates"]);
+    fail(&folder, &["spectrum", "--out", out, "--integrands", "9", &good], &["--integrands is for tiles"]);
+    fail(&folder, &["spectrum", "--out", out, "--size", "8", "--axes", "1", "2", &good], &["--axes is for point sets"]);
     fail(&folder, &["spectrum", "--out", "/nowhere/out.png", &good], &["/nowhere"]);
     fail(&folder, &["spectrum", "--out", out, &nan], &["nan.txt"]);
 }

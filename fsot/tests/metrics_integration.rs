@@ -119,7 +119,7 @@ fn logarithmic_spacing() {
 }
 
 #[test]
-fn integrands_of_tiles_keep_away_from_the_axes() {
+fn half_planes_of_tiles_lie_through_uniform_points() {
     assert_eq!(tile::integrands(Family::Gaussian, 2, 5).len(), 5);
     // Integrals of half-spaces through uniform points are spread over all of (0, 1).
     let integrals: Vec<f64> = tile::integrands(Family::HalfSpace, 2, 500).iter().map(|i| i.integral).collect();

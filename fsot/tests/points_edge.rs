@@ -136,6 +136,15 @@ fn prefixes_end_where_they_should() {
     assert_eq!(all.function, ClassFunction::Ramp { rising: false });
 }
 
+/// In single precision the last coordinates would be 1.
+#[test]
+fn the_last_of_many_points_is_in_a_class() {
+    let function = ClassFunction::Box { from: 0.5, to: 1.0 };
+    for points in [1 << 24, 1 << 28] {
+        assert_eq!(ClassCoordinates::Index.value(&function, points - 1, points), 1.0);
+    }
+}
+
 /// A staircase of as many steps as points would take minutes if each point were looked for from the first step on.
 #[test]
 fn long_staircases_are_searched_in_halves() {
@@ -153,11 +162,15 @@ fn the_plane_chooses_points() {
     let places: Vec<[f32; 2]> = (0..64).map(|i| [(i % 8) as f32 / 8.0, (i / 8) as f32 / 8.0]).collect();
     let mut problem = short(64, 2);
     problem.class_coordinates = ClassCoordinates::Plane(places);
-    problem.classes = vec![
-        class_of(ClassFunction::Rectangle { from: [0.0, 0.0], to: [0.5, 0.5] }, 2),
-        class_of(ClassFunction::Gaussian { center: vec![0.5, 0.5], sigma: 0.2 }, 2),
-    ];
-    assert!(inside(&optimize(problem).unwrap()));
+    let before = Optimizer::new(problem.clone()).unwrap().points();
+    problem.classes = vec![class_of(ClassFunction::Rectangle { from: [0.0, 0.25], to: [0.5, 0.5] }, 2)];
+    let after = optimize(problem.clone()).unwrap();
+    let moved = before.iter().zip(after.iter()).zip(0..).filter(|((before, after), _)| before != after);
+    let rectangle = [16, 17, 18, 19, 24, 25, 26, 27];
+    assert_eq!(moved.map(|(_, number)| number).collect::<Vec<usize>>(), rectangle);
+    problem.classes.push(class_of(ClassFunction::Gaussian { center: vec![0.5, 0.5], sigma: 0.2 }, 2));
+    let after = optimize(problem).unwrap();
+    assert!(inside(&after) && before.iter().zip(after.iter()).all(|(before, after)| before != after));
 }
 
 #[test]

@@ -72,6 +72,7 @@ fn kernels_are_written_as_they_are_read() {
         "gaussian:-1",
         "gaussian:nan",
         "gaussian:99",
+        "gaussian:1e-23",
         "box:2",
         "perceptual*",
         "*",
@@ -114,6 +115,9 @@ fn the_eye_answers_within_a_quarter_of_a_second() {
     assert!(weights.len() <= 16, "{weights:?}");
     let zero = weights[peak..].windows(3).position(|w| w[1] < w[0] && w[1] < w[2]);
     assert!(zero.is_some(), "no change of sign: {weights:?}");
+    assert_eq!(TemporalKernel::Mantiuk.weights(weights.len()).unwrap(), weights);
+    let error = TemporalKernel::Mantiuk.weights(weights.len() - 1).unwrap_err().to_string();
+    assert!(error.contains(&format!("spans {} frames", weights.len())), "{error}");
 }
 
 #[test]

@@ -4,6 +4,9 @@ use crate::Error;
 use crate::error::Result;
 use serde::Deserialize;
 
+/// The least standard deviation of a Gaussian: the squares of much smaller ones are 0.
+pub(crate) const MIN_SIGMA: f32 = 1e-18;
+
 /// A piece of a staircase.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -49,7 +52,7 @@ pub enum ClassFunction {
     Gaussian {
         /// Where it is 1.
         center: Vec<f32>,
-        /// Its standard deviation, above 0.
+        /// Its standard deviation, at least 1e-18.
         sigma: f32,
     },
     /// Values at equidistant coordinates from 0 to 1, linear between them; one value is a constant.
@@ -123,8 +126,8 @@ impl ClassFunction {
             ClassFunction::Gaussian { center, sigma } => {
                 if center.is_empty() || center.len() > 2 || !center.iter().all(|c| c.is_finite()) {
                     fail(format!("a Gaussian around {center:?}: give one or two finite numbers"))
-                } else if !(*sigma > 0.0 && sigma.is_finite()) {
-                    fail(format!("a Gaussian with sigma {sigma}: give a finite number above 0"))
+                } else if !(*sigma >= MIN_SIGMA && sigma.is_finite()) {
+                    fail(format!("a Gaussian with sigma {sigma}: give a finite number of at least {MIN_SIGMA:e}"))
                 } else {
                     Ok(())
                 }

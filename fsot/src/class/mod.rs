@@ -12,4 +12,5 @@ pub use presets::{progressive, progressive_prefixes, ramp, single, three_colors,
 pub use weighted::{Class, ClassCoordinates};
 
 pub(crate) use filter::Filter;
-pub(crate) use weighted::{check_weight, normalised};
+pub(crate) use function::MIN_SIGMA;
+pub(crate) use weighted::{check_weight, middle, normalised};

@@ -3,6 +3,7 @@
 use super::function::ClassFunction;
 use crate::Error;
 use crate::error::Result;
+use crate::points::BELOW_ONE;
 use crate::target::Target;
 use std::sync::Arc;
 
@@ -22,7 +23,7 @@ pub struct Class {
 /// Where the points are in the space of the class functions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ClassCoordinates {
-    /// Point i of n is at (i + 1/2) / n.
+    /// Point i of n is at (i + 1/2) / n, below 1.
     Index,
     /// Every point's place in the image plane, in [0, 1]^2.
     Plane(Vec<[f32; 2]>),
@@ -32,10 +33,15 @@ impl ClassCoordinates {
     /// A class function at point `i` of `points`.
     pub fn value(&self, function: &ClassFunction, i: usize, points: usize) -> f32 {
         match self {
-            ClassCoordinates::Index => function.value(&[((i as f64 + 0.5) / points as f64) as f32]),
+            ClassCoordinates::Index => function.value(&[middle(i, points)]),
             ClassCoordinates::Plane(places) => places.get(i).map_or(0.0, |place| function.value(place)),
         }
     }
+}
+
+/// The middle of the `i`th of `count` parts of [0, 1): the last of 2^24 would be rounded to 1.
+pub(crate) fn middle(i: usize, count: usize) -> f32 {
+    (((i as f64 + 0.5) / count as f64) as f32).min(BELOW_ONE)
 }
 
 /// The weights of classes, normalised to sum to 1; empty classes (no members) have 0. `None` if nothing is left.

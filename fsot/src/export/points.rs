@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::points::Points;
 use crate::read::ending;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 use std::path::Path;
 
 /// Points, and to which class each belongs.
@@ -28,15 +29,15 @@ pub struct Labels {
 impl Labels {
     /// From a name for each point; the classes in the order in which they appear.
     pub fn from_names(of_points: impl IntoIterator<Item = String>) -> Labels {
-        let mut labels = Labels { names: Vec::new(), index: Vec::new() };
-        for name in of_points {
-            let known = labels.names.iter().position(|other| *other == name);
-            labels.index.push(known.unwrap_or_else(|| {
-                labels.names.push(name);
-                labels.names.len() - 1
-            }));
-        }
-        labels
+        let mut known = HashMap::new();
+        let mut number = |name| {
+            let next = known.len();
+            *known.entry(name).or_insert(next)
+        };
+        let index = of_points.into_iter().map(&mut number).collect();
+        let mut names = vec![String::new(); known.len()];
+        known.into_iter().for_each(|(name, number)| names[number] = name);
+        Labels { names, index }
     }
 
     /// The name of each point's class.

@@ -16,14 +16,14 @@ use std::io::Cursor;
 const PER_LINE: usize = 16;
 /// Coordinates per texel.
 const CHANNELS: usize = 4;
-/// The words of C and C++, in small letters, and of `stdint.h`.
-const KEYWORDS: &str = "alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t char32_t \
-    char8_t class co_await co_return co_yield compl concept const const_cast consteval constexpr constinit continue \
-    decltype default delete do double dynamic_cast else enum explicit export extern false float for friend goto if \
-    inline int long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public \
-    register reinterpret_cast requires restrict return short signed sizeof static static_assert static_cast struct \
-    switch template this thread_local throw true try typedef typeid typename typeof typeof_unqual union unsigned using \
-    virtual void volatile wchar_t while xor xor_eq int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t";
+/// The words of C and C++ in small letters, but for those that end in `_t`, and two macros of their compilers.
+const KEYWORDS: &str = "alignas alignof and and_eq asm auto bitand bitor bool break case catch char class co_await \
+    co_return co_yield compl concept const const_cast consteval constexpr constinit continue decltype default delete \
+    do double dynamic_cast else enum explicit export extern false float for friend goto if inline int long mutable \
+    namespace new noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast \
+    requires restrict return short signed sizeof static static_assert static_cast struct switch template this \
+    thread_local throw true try typedef typeid typename typeof typeof_unqual union unsigned using virtual void \
+    volatile while xor xor_eq linux unix";
 
 /// # Errors
 /// The payload has another length than the shape says.
@@ -133,14 +133,14 @@ fn encode(picture: Option<DynamicImage>, format: ImageFormat) -> Result<Vec<u8>>
 }
 
 /// C99 and C++: the dimensions as macros, the integers as a static constant array `NAME`, or `tile_NAME` if the
-/// language has given the name a meaning.
+/// language or `stdint.h` may have given the name a meaning.
 ///
 /// # Errors
 /// The payload has another length than the shape says.
 pub fn c_header(tile: &Tile<'_>, name: &str) -> Result<Vec<u8>> {
     check(tile)?;
     let mut name = identifier(name).to_ascii_lowercase();
-    if KEYWORDS.split_whitespace().any(|word| word == name) {
+    if name.ends_with("_t") || KEYWORDS.split_whitespace().any(|word| word == name) {
         name.insert_str(0, "tile_");
     }
     let upper = name.to_ascii_uppercase();

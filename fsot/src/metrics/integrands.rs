@@ -84,3 +84,19 @@ fn gaussian_integral(centre: &[f64], sigma: f64) -> f64 {
     let half = scale * std::f64::consts::PI.sqrt() / 2.0;
     centre.iter().map(|c| half * (libm::erf((1.0 - c) / scale) + libm::erf(c / scale))).product()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::tile;
+
+    #[test]
+    fn normals_of_tiles_integrands_keep_away_from_the_axes() {
+        for (dims, smallest) in [(2, 1e-3), (3, 0.03)] {
+            for integrand in tile::integrands(Family::HalfSpace, dims, 1000) {
+                let Shape::HalfSpace { normal, .. } = integrand.shape else { panic!("{integrand:?}") };
+                assert!(normal.len() == dims && normal.iter().all(|a| a.abs() >= smallest), "{normal:?}");
+            }
+        }
+    }
+}

@@ -6,7 +6,7 @@ use super::problem::{Problem, Quality};
 /// with 8 or 16 slices, .870 with 32; hundreds are much worse. Sixteen keep as many threads busy.
 pub(crate) const SLICES: usize = 16;
 
-/// Points per window of a large set.
+/// Points per window of a large set, at least, in the mean.
 const WINDOW: usize = 1024;
 /// Sets of more points than this are optimised in windows.
 pub(crate) const WINDOWED_FROM: usize = 8192;

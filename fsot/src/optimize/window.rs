@@ -1,5 +1,5 @@
-//! Windows: large uniform sets are optimised in boxes of about a thousand points, which costs less per point and moves
-//! them farther.
+//! Windows: large uniform sets are optimised in boxes of at least 1,024 points in the mean, which costs less per point
+//! and moves them farther.
 
 use super::cut::{Piece, cut};
 use super::direction::direction;

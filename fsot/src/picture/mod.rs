@@ -15,4 +15,4 @@ pub(crate) use photo::is_linear;
 pub use raster::{png, rasterise};
 pub(crate) use resample::resample;
 pub use score::blurred_psnr;
-pub use vector::svg;
+pub use vector::{hex, svg};

@@ -7,7 +7,7 @@ mod object;
 pub use draw::{colour_of, drawing};
 pub use object::Object;
 
-use crate::class::{Class, ClassCoordinates, ClassFunction};
+use crate::class::{Class, ClassCoordinates, ClassFunction, middle};
 use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::optimize::{Problem, Quality};
@@ -70,7 +70,7 @@ impl Placement {
         for colour in 0..colours {
             let count = points / colours + usize::from(colour < points % colours);
             for index in 0..count {
-                let size = (index as f32 + 0.5) / count as f32;
+                let size = middle(index, count);
                 kinds.push((colour, if options.sizes { size } else { 0.5 }));
                 places.push([size, (colour as f32 + 0.5) / colours as f32]);
             }

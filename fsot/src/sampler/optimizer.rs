@@ -42,11 +42,9 @@ pub struct SamplerOptimizer {
     border: Border,
     /// What a checkpoint holds: offsets, then what the border remembers.
     coordinates: Vec<f32>,
-    /// What the last step saw.
-    report: SamplerReport,
 }
 
-/// What a step saw: for each octave, relative to independent samples.
+/// What there is: for each octave, relative to independent samples.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SamplerReport {
     /// The energy of pixels alone.
@@ -55,8 +53,6 @@ pub struct SamplerReport {
     pub filtered: [f32; OCTAVES],
     /// The least and the greatest density of an axis within 1/64 of a border, relative to a uniform one.
     pub border: [[f32; 2]; OCTAVES],
-    /// Arrangements taken by a visit.
-    pub taken: f32,
 }
 
 /// Sums over pixels of a step.
@@ -99,7 +95,6 @@ impl SamplerOptimizer {
             offsets: (0..pixels).map(|_| start()).collect(),
             border: Border::new(pixels),
             coordinates: vec![0.0; (pixels << (bits + 1)) + STATE],
-            report: SamplerReport::default(),
             problem,
         };
         optimizer.store();
@@ -109,11 +104,6 @@ impl SamplerOptimizer {
     /// What is being optimised.
     pub fn problem(&self) -> &SamplerProblem {
         &self.problem
-    }
-
-    /// What the last step saw.
-    pub fn report(&self) -> &SamplerReport {
-        &self.report
     }
 
     /// What there is now, of all octaves.
@@ -272,7 +262,7 @@ impl SamplerOptimizer {
         }
     }
 
-    fn sweep(&mut self, sweep: usize, rules: (&Energy, &Groups, f32), fields: &mut Fields, all: &mut [Places]) -> u64 {
+    fn sweep(&mut self, sweep: usize, rules: (&Energy, &Groups, f32), fields: &mut Fields, all: &mut [Places]) {
         let (energy, groups, temperature) = rules;
         let number = self.iteration * SWEEPS as u64 + sweep as u64;
         let mut rng = stream(self.problem.seed, number, ORDER_STREAM);
@@ -281,7 +271,6 @@ impl SamplerOptimizer {
             order.swap(last, rng.below(last as u32 + 1) as usize);
         }
         let size = self.problem.size;
-        let mut taken = 0;
         for place in order {
             let (row, column) = (place / APART, place % APART);
             let rows = (row..size).step_by(APART);
@@ -301,18 +290,17 @@ impl SamplerOptimizer {
                 let around = self.surroundings(energy, fields, *pixel, prices);
                 let mut rng = stream(self.problem.seed, number, *pixel as u64);
                 let before = (self.offsets[*pixel], all[*pixel]);
-                let (offsets, places, taken) = visit(&rules, &around, *pixel as u32, before, &mut rng);
-                (taken > 0).then(|| {
+                let (offsets, places, changed) = visit(&rules, &around, *pixel as u32, before, &mut rng);
+                changed.then(|| {
                     let mut change = self.errors(energy, &places);
                     subtract(&mut change, &fields.errors[*pixel]);
-                    (offsets, places, change, taken)
+                    (offsets, places, change)
                 })
             };
             let found: Vec<_> = pixels.par_iter().map(look).collect();
             let mut changes = Vec::new();
             for (pixel, found) in pixels.into_iter().zip(found) {
-                let Some((offsets, places, change, number)) = found else { continue };
-                taken += u64::from(number);
+                let Some((offsets, places, change)) = found else { continue };
                 let old = std::mem::replace(&mut all[pixel], places);
                 self.count(energy, &old, -1);
                 self.count(energy, &places, 1);
@@ -325,7 +313,6 @@ impl SamplerOptimizer {
             around.for_each(|(pixel, around)| self.add_around(pixel, &changes, &energy.octaves, around));
         }
         self.border.remember(&energy.octaves);
-        taken
     }
 
     /// What there is at the beginning of a step.
@@ -386,13 +373,10 @@ impl Optimization for SamplerOptimizer {
         let groups = Groups::new(&self.problem, energy.points);
         let mut all = self.survey(&energy, &groups);
         let mut fields = self.fields(&energy, &all);
-        let mut report = self.look(&energy, &fields, &all);
-        let mut taken = 0;
+        let report = self.look(&energy, &fields, &all);
         for sweep in 0..SWEEPS {
-            taken += self.sweep(sweep, (&energy, &groups, temperature), &mut fields, &mut all);
+            self.sweep(sweep, (&energy, &groups, temperature), &mut fields, &mut all);
         }
-        report.taken = taken as f32 / (SWEEPS * all.len()) as f32;
-        self.report = report;
         self.iteration += 1;
         self.store();
         let sum: f32 = energy.octaves.iter().map(|octave| weights[*octave] * report.filtered[*octave]).sum();

@@ -67,20 +67,20 @@ fn place(groups: &Groups, offsets: &Offsets, number: u32, axis: usize, point: us
     (fine(groups.net[axis][point] ^ (offset << OFFSET_BITS), number, axis) >> 16) as u16
 }
 
-/// Visits pixel `number`; its offsets and points afterwards, and how many arrangements were taken.
+/// Visits pixel `number`; its offsets and points afterwards, and whether an arrangement was taken.
 pub(crate) fn visit(
     rules: &Rules,
     around: &Surroundings,
     number: u32,
     (offsets, places): (Offsets, Places),
     rng: &mut Rng,
-) -> (Offsets, Places, u32) {
+) -> (Offsets, Places, bool) {
     let mut pixel = Pixel::new(rules, around, number, (offsets, places));
-    let mut taken = 0;
+    let mut changed = false;
     for _ in 0..rules.candidates {
-        taken += u32::from(pixel.attempt(rng));
+        changed |= pixel.attempt(rng);
     }
-    (pixel.offsets, pixel.places, taken)
+    (pixel.offsets, pixel.places, changed)
 }
 
 impl<'a> Pixel<'a> {

@@ -10,9 +10,9 @@ use noisefloor::rng::Rng;
 
 /// A distribution whose density is a function on `[0, 1]^dims`, known up to a factor.
 ///
-/// The function is taken at many places, once: in one dimension at 4,096, in two at a grid of at least 128 x 128 cells
-/// and eight per point, whose projections are exact, in more at eight places per point of a low-discrepancy sequence,
-/// at least 16,384.
+/// The function is taken at many places, once: in one dimension at 4,096, in two at a grid of eight cells per point,
+/// 128 x 128 to 4,096 x 4,096, whose projections are exact, in more at eight places per point of a low-discrepancy
+/// sequence, 2^14 to 2^22.
 #[derive(Clone, Debug)]
 pub struct Function(Form);
 

@@ -51,7 +51,7 @@ impl Target for Uniform {
 pub fn uniform_bins(center: f32, extents: &mut [f32], range: f32, means: &mut [f32], density: &mut [f32]) {
     extents.sort_unstable_by(|a, b| b.total_cmp(a));
     let longest = extents.first().copied().unwrap_or(0.0);
-    // An edge this short widens the projection by less than single precision shows.
+    // Without an edge this short the projection is too narrow, by at most 1e-5 of its length.
     let edges = extents.iter().take_while(|&&extent| extent > 1e-5 * longest).count();
     match edges {
         0 => {

@@ -1,5 +1,6 @@
 //! What an image is filtered by before its error is judged: reconstruction by the renderer, perception by the eye.
 
+use crate::class::MIN_SIGMA;
 use crate::{Error, error::Result};
 use std::fmt;
 use std::str::FromStr;
@@ -43,7 +44,7 @@ pub struct Tap {
 pub enum Kernel {
     /// A pixel's own samples only: what box reconstruction integrates.
     Box,
-    /// A Gaussian, for a renderer that reconstructs with one: the standard deviation in pixels, above 0 and at most 16.
+    /// A Gaussian, for a renderer that reconstructs with one: the standard deviation in pixels, 1e-18 to 16.
     Gaussian(f32),
     /// A Gaussian of standard deviation [`PERCEPTUAL_SIGMA`]: what the eye makes of the pixels at a usual distance.
     Perceptual,
@@ -121,9 +122,9 @@ impl Kernel {
 
 /// A Gaussian in the square that holds it down to [`CUT`], the circle beyond it included.
 fn gaussian(sigma: f32, reach: f32) -> Result<Vec<Vec<f32>>> {
-    if !(sigma > 0.0 && sigma <= MAX_SIGMA) {
+    if !(MIN_SIGMA..=MAX_SIGMA).contains(&sigma) {
         return Err(Error::input(format!(
-            "a Gaussian kernel has a standard deviation above 0 and at most {MAX_SIGMA} pixels, not {sigma}"
+            "a Gaussian kernel has a standard deviation of {MIN_SIGMA:e} to {MAX_SIGMA} pixels, not {sigma}"
         )));
     }
     let radius = libm::floorf(reach * sigma * libm::sqrtf(-2.0 * libm::logf(CUT))) as i32;

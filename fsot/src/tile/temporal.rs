@@ -8,6 +8,9 @@ use std::str::FromStr;
 /// Frames per second that [`TemporalKernel::Mantiuk`] is sampled at.
 pub const FRAME_RATE: f32 = 60.0;
 
+/// Frames of [`TemporalKernel::Mantiuk`], a second: the eye has answered long before its end.
+const EYE: usize = 60;
+
 /// The weight, relative to the largest, below which a temporal kernel ends.
 const CUT: f32 = 0.05;
 
@@ -15,8 +18,8 @@ const CUT: f32 = 0.05;
 /// image, so that the animation loops.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TemporalKernel {
-    /// The exponential moving average of temporal anti-aliasing, `a (1 - a)^k` for the frame k frames ago: a from
-    /// 1e-6 to 1.
+    /// The exponential moving average of temporal anti-aliasing, `a (1 - a)^k` for the frame k frames ago, cut
+    /// at the animation's length: a from 1e-6 to 1.
     Ema(f32),
     /// The eye's response, sustained plus transient, at [`FRAME_RATE`]: R. Mantiuk et al., "FovVideoVDP: A Visible
     /// Difference Predictor for Wide Field-of-View Video", 2021.
@@ -53,7 +56,7 @@ impl TemporalKernel {
         Ok(weights)
     }
 
-    /// The signed impulse response, frame by frame into the past.
+    /// The signed impulse response, frame by frame into the past: `frames` of one that does not end.
     fn response(&self, frames: usize) -> Result<Vec<f32>> {
         match self {
             TemporalKernel::Ema(alpha) => {
@@ -64,7 +67,7 @@ impl TemporalKernel {
                 }
                 Ok(std::iter::successors(Some(*alpha), |weight| Some(weight * (1.0 - alpha))).take(frames).collect())
             }
-            TemporalKernel::Mantiuk => Ok(eye(frames)),
+            TemporalKernel::Mantiuk => Ok(eye()),
             TemporalKernel::Tabulated(values) => {
                 if let Some(bad) = values.iter().find(|value| !(value.is_finite() && **value >= 0.0)) {
                     return Err(Error::input(format!("a temporal kernel's values are 0 or positive, not {bad}")));
@@ -75,12 +78,12 @@ impl TemporalKernel {
     }
 }
 
-/// The sum of the sustained and the transient response at the middle of each of `frames` frames.
-fn eye(frames: usize) -> Vec<f32> {
+/// The sum of the sustained and the transient response at the middle of each frame.
+fn eye() -> Vec<f32> {
     const PEAK: f64 = 0.06;
     const WIDTH: f64 = 0.5;
     const TRANSIENT: f64 = 0.062_170_507_756_932;
-    let times: Vec<f64> = (0..frames).map(|frame| (frame as f64 + 0.5) / f64::from(FRAME_RATE) + 1e-4).collect();
+    let times: Vec<f64> = (0..EYE).map(|frame| (frame as f64 + 0.5) / f64::from(FRAME_RATE) + 1e-4).collect();
     let log = |t: f64| libm::log(t / PEAK);
     let sustained = |t: f64| libm::exp(-log(t) * log(t) / (2.0 * WIDTH * WIDTH));
     let total: f64 = times.iter().map(|&t| sustained(t)).sum();

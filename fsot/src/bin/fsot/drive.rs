@@ -122,12 +122,14 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
     })
 }
 
-/// Puts a command's outputs in place, then removes the checkpoints of its runs.
-pub(crate) fn finish(outputs: Outputs, runs: impl IntoIterator<Item = Run>) -> Result<()> {
+/// Puts a command's outputs in place, then removes its run's checkpoint.
+pub(crate) fn finish(outputs: Outputs, run: &Run) -> Result<()> {
     let _watch = Watch::start()?;
     outputs.commit()?;
     // Meanwhile another run may have saved its state under the same name.
-    runs.into_iter().filter(|run| run.saved).for_each(|run| checkpoint::remove(&run.checkpoint, &run.problem));
+    if run.saved {
+        checkpoint::remove(&run.checkpoint, &run.problem);
+    }
     Ok(())
 }
 

@@ -17,6 +17,9 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+/// The most classes of a file that are measured, the first ones.
+const CLASSES: usize = 256;
+
 /// What `fsot measure` is asked for.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
@@ -36,9 +39,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "COUNT", default_value_t = 4, requires = "prefix")]
     #[arg(value_parser = clap::value_parser!(u8).range(1..=64))]
     per_octave: u8,
-    /// Random integrands of each family, of --prefix and of tiles
-    #[arg(long, value_name = "COUNT", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=65536))]
-    integrands: u32,
+    /// Random integrands of each family, of --prefix and of tiles [default: 512]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=65536))]
+    integrands: Option<u32>,
     /// Leave out the integration error of point sets, which takes longest
     #[arg(long)]
     quick: bool,
@@ -89,6 +92,14 @@ impl Samples {
 }
 
 impl Tile {
+    /// Fails if there is a size, and no file that can have it.
+    pub(crate) fn check(&self, files: &[PathBuf]) -> Result<()> {
+        if self.size.is_some() && files.iter().all(|path| read::ending(path) == "nft") {
+            return Err(idle("--size", "files of points"));
+        }
+        Ok(())
+    }
+
     /// Reads a file.
     pub(crate) fn read(&self, path: &Path) -> Result<Content> {
         if read::ending(path) == "nft" {
@@ -119,6 +130,12 @@ impl Tile {
     }
 }
 
+impl Args {
+    fn integrands(&self) -> usize {
+        self.integrands.unwrap_or(512) as usize
+    }
+}
+
 /// The name of the first file and how many more there are.
 pub(crate) fn title(files: &[PathBuf]) -> String {
     let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -127,6 +144,11 @@ pub(crate) fn title(files: &[PathBuf]) -> String {
         [file] => name(file),
         [file, more @ ..] => format!("{} and {} more", name(file), more.len()),
     }
+}
+
+/// That an option, which is for `what`, has no effect.
+pub(crate) fn idle(option: &str, what: &str) -> Error {
+    Error::Input(format!("{option} is for {what}, and there is none: leave it out"))
 }
 
 /// Says of which file an error is.
@@ -146,8 +168,16 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     args.plot.iter().try_for_each(|path| names::picture(path, &["png", "svg"]))?;
     output::check(args.plot.as_deref(), args.files.iter().map(PathBuf::as_path))?;
     let contents: Vec<Content> = args.files.iter().map(|path| args.tile.read(path)).collect::<Result<_>>()?;
-    if !args.ema.is_empty() && !contents.iter().any(|content| matches!(content, Content::Tile(_))) {
-        return Err(Error::input("--ema is for tiles, and there is none: leave it out"));
+    args.tile.check(&args.files)?;
+    let tiles = contents.iter().filter(|content| matches!(content, Content::Tile(_))).count();
+    if !args.ema.is_empty() && tiles == 0 {
+        return Err(idle("--ema", "tiles"));
+    }
+    if args.integrands.is_some() && !args.prefix && tiles == 0 {
+        return Err(idle("--integrands", "--prefix and tiles"));
+    }
+    if args.quick && tiles == contents.len() {
+        return Err(idle("--quick", "point sets"));
     }
     let (text, json) =
         args.threads.install(|| if args.prefix { prefix(args, &contents) } else { all(args, &contents) })??;
@@ -173,7 +203,7 @@ fn points(args: &Args, path: &Path, table: &Table, text: &mut String) -> Result<
     let _ = writeln!(text, "{}\n{whole}", path.display());
     let mut classes = Vec::new();
     if let Some(labels) = &table.classes {
-        for (class, name) in labels.names.iter().enumerate() {
+        for (class, name) in labels.names.iter().enumerate().take(CLASSES) {
             let members = metrics::select(&table.points, |i| labels.index[i] == class);
             if members.is_empty() {
                 continue;
@@ -187,11 +217,16 @@ fn points(args: &Args, path: &Path, table: &Table, text: &mut String) -> Result<
     if !classes.is_empty() {
         value["classes"] = classes.into();
     }
+    let left = table.classes.as_ref().map_or(0, |labels| labels.names.len()).saturating_sub(CLASSES);
+    if left > 0 {
+        let _ = writeln!(text, "{}: {left} more classes are left out", path.display());
+        value["classes_left_out"] = left.into();
+    }
     Ok(value)
 }
 
 fn tile(args: &Args, path: &Path, samples: &Samples, text: &mut String) -> Result<Value> {
-    let mut options = TileOptions { integrands: args.integrands as usize, ..TileOptions::default() };
+    let mut options = TileOptions { integrands: args.integrands(), ..TileOptions::default() };
     if !args.ema.is_empty() {
         options.alphas.clone_from(&args.ema);
     }
@@ -213,7 +248,7 @@ fn prefix(args: &Args, contents: &[Content]) -> Result<(String, Value)> {
         })
         .collect::<Result<_>>()?;
     let counts = metrics::log_spaced(sets.first().map_or(0, Points::len), args.per_octave.into());
-    let errors = metrics::prefix_errors(&sets, &counts, args.integrands as usize)?;
+    let errors = metrics::prefix_errors(&sets, &counts, args.integrands())?;
     if let Some(path) = &args.plot {
         let sheet = figure::prefix_errors(&title(&args.files), &errors);
         let is_svg = read::ending(path) == "svg";
@@ -222,9 +257,9 @@ fn prefix(args: &Args, contents: &[Content]) -> Result<(String, Value)> {
     let text = format!(
         "error of the first points, averaged over {} and {} of each family\n{}",
         counted(sets.len(), "set"),
-        counted(args.integrands, "integrand"),
+        counted(args.integrands(), "integrand"),
         PrefixTable(&errors)
     );
     let files: Vec<_> = args.files.iter().map(|path| path.to_string_lossy()).collect();
-    Ok((text, json!({ "files": files, "integrands": args.integrands, "prefix": errors })))
+    Ok((text, json!({ "files": files, "integrands": args.integrands(), "prefix": errors })))
 }

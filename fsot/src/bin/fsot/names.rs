@@ -1,21 +1,26 @@
-//! The names of outputs: none ends in what the file is not. Pipes and devices have the names that they have.
+//! The names of outputs: none ends as a picture or a tile does that is none. Pipes and devices have the names that
+//! they have.
 
 use fsot::error::{Error, Result};
 use fsot::{output, read};
 use std::path::Path;
 
-/// Endings that programs open as pictures.
-const PICTURES: [&str; 5] = ["png", "svg", "jpg", "jpeg", "exr"];
+/// Endings of pictures and tiles.
+const KNOWN: [&str; 6] = ["png", "svg", "jpg", "jpeg", "exr", "nft"];
 
-/// Of a picture: refuses the endings of others than the `written` kinds.
+/// The ending of a name that is that of a picture or a tile, but of none of the `written` kinds.
+fn other(path: &Path, written: &[&str]) -> Option<String> {
+    let ending = read::ending(path);
+    let is = |kinds: &[&str]| kinds.contains(&&ending[..]);
+    (!output::is_stream(path) && is(&KNOWN) && !is(written)).then_some(ending)
+}
+
+/// Of a picture: refuses the endings of tiles, and of others than the `written` kinds.
 ///
 /// # Errors
 /// A sentence that names them.
 pub(crate) fn picture(path: &Path, written: &[&str]) -> Result<()> {
-    let ending = read::ending(path);
-    if output::is_stream(path) || written.contains(&&ending[..]) || !PICTURES.contains(&&ending[..]) {
-        return Ok(());
-    }
+    let Some(ending) = other(path, written) else { return Ok(()) };
     let kinds = written.iter().map(|kind| kind.to_ascii_uppercase()).collect::<Vec<_>>().join(" or ");
     let endings = written.iter().map(|kind| format!(".{kind}")).collect::<Vec<_>>().join(" or ");
     Err(Error::Input(format!("{} would be {kinds}, not {ending}: end its name in {endings}", path.display())))
@@ -24,14 +29,12 @@ pub(crate) fn picture(path: &Path, written: &[&str]) -> Result<()> {
 /// Of a table of points.
 ///
 /// # Errors
-/// The name is that of a picture.
+/// The name is that of a picture or a tile.
 pub(crate) fn table(path: &Path, advice: &str) -> Result<()> {
-    if output::is_stream(path) || !PICTURES.contains(&&read::ending(path)[..]) {
-        return Ok(());
-    }
-    let name = path.display();
+    let Some(ending) = other(path, &[]) else { return Ok(()) };
+    let (name, kind) = (path.display(), if ending == "nft" { "tile" } else { "picture" });
     Err(Error::Input(format!(
-        "{name} would be a table of points, not a picture: end its name in .txt, .csv or .json{advice}"
+        "{name} would be a table of points, not a {kind}: end its name in .txt, .csv or .json{advice}"
     )))
 }
 
@@ -76,10 +79,16 @@ pub(crate) fn sampler(path: &Path) -> Result<()> {
 /// Of what a tile is exported as, `written`.
 ///
 /// # Errors
-/// It is that of a tile, which it would replace, or of another picture.
+/// It is that of a tile, which it would replace, or of a picture that it is not.
 pub(crate) fn export(path: &Path, written: &str) -> Result<()> {
     if !output::is_stream(path) && read::ending(path) == "nft" {
         return Err(Error::Input(format!("{} is the name of a tile: give the {written} file another", path.display())));
     }
-    if PICTURES.contains(&written) { picture(path, &[written]) } else { Ok(()) }
+    match other(path, &[written]) {
+        Some(ending) if !KNOWN.contains(&written) => Err(Error::Input(format!(
+            "{} would be the {written} file, not {ending}: give it another ending",
+            path.display()
+        ))),
+        _ => picture(path, &[written]),
+    }
 }

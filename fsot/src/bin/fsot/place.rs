@@ -8,6 +8,7 @@ use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::optimize::Optimizer;
 use fsot::output::{self, Outputs};
+use fsot::picture::hex;
 use fsot::place::{Object, Options, Placement, colour_of, drawing};
 use fsot::read;
 use serde_json::json;
@@ -81,7 +82,7 @@ fn make(args: &Args) -> Result<()> {
     let json = json!({
         "objects": points, "colors": colours, "sizes": args.sizes, "classes": classes, "run": run.json(),
     });
-    finish(outputs, [run])?;
+    finish(outputs, &run)?;
     args.common.print(args.pictures.paths(), &text, &json)
 }
 
@@ -112,7 +113,6 @@ impl Format {
                 writer.into_inner().map_err(|error| failed(&error))
             }
             Format::Json => {
-                let hex = |[red, green, blue]: [u8; 3]| format!("#{red:02x}{green:02x}{blue:02x}");
                 let palette: Vec<String> = (0..colours).map(|color| hex(colour_of(color, colours))).collect();
                 let mut bytes = serde_json::to_vec(&json!({ "colors": palette, "objects": objects }))
                     .map_err(|error| failed(&error))?;

@@ -80,8 +80,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 fn make(args: &Args) -> Result<()> {
     args.pictures.check()?;
     names::table(&args.common.out, "; --png and --svg draw the points")?;
-    let inputs = args.density.as_deref().into_iter().chain(args.classes.as_deref().map(Path::new));
-    args.common.check_outputs(args.pictures.paths(), inputs)?;
+    args.common.check_outputs(args.pictures.paths(), args.density.as_deref())?;
     if args.d < 2 && args.pictures.paths().next().is_some() {
         return Err(Error::input("points of 1 coordinate cannot be drawn: leave out --png and --svg"));
     }
@@ -91,12 +90,17 @@ fn make(args: &Args) -> Result<()> {
     let run = drive(&mut optimizer, &description, &args.common)?;
 
     let table = Table { points: optimizer.points(), classes: classes.labels() };
+    drop(optimizer);
     let mut outputs = Outputs::new();
     outputs.add(&args.common.out, &encode(&table, Format::of(&args.common.out))?)?;
     args.pictures.add(&mut outputs, PICTURE, || draw(&table, extent))?;
-    let report = if args.common.quiet { None } else { Some(report::report(&args.common.out, &table, &classes, &run)?) };
-    finish(outputs, [run])?;
-    report.map_or(Ok(()), |(text, json)| args.common.print(args.pictures.paths(), &text, &json))
+    finish(outputs, &run)?;
+    if args.common.quiet {
+        return Ok(());
+    }
+    // Of many points it takes more memory than their optimisation: the points are safe before.
+    let (text, json) = report::report(&args.common.out, &table, &classes, &run)?;
+    args.common.print(args.pictures.paths(), &text, &json)
 }
 
 /// The problem, all that its result depends on, and the extent of the drawing.
@@ -115,6 +119,7 @@ fn problem(args: &Args) -> Result<(Problem, Value, [f32; 2])> {
             if !path.exists() {
                 return Err(Error::Input(format!("--classes {name}: give 2color, 3color, ramp or the name of a file")));
             }
+            args.common.check_outputs(args.pictures.paths(), [path])?;
             let text = read::text(path, "a class file")?;
             files.push(digest(text.as_bytes()));
             // Pictures are named relative to the file that names them.

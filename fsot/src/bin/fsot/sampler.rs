@@ -66,7 +66,7 @@ fn make(args: &Args) -> Result<()> {
         writeln!(text, "  {spp:>3}  {filtered:8.4}  {raw:6.4}  {least:.2} to {most:.2}").unwrap_or(());
     }
     let json = json!({ "out": out.to_string_lossy(), "run": run.json(), "octaves": octaves });
-    finish(outputs, [run])?;
+    finish(outputs, &run)?;
     args.common.print([], &text, &json)
 }
 

@@ -1,7 +1,7 @@
 //! `fsot spectrum`.
 
 use crate::common::Threads;
-use crate::measure::{Content, Tile, title};
+use crate::measure::{Content, Tile, idle, title};
 use crate::names;
 use fsot::error::{Error, Result};
 use fsot::metrics::figure::{self, Subject};
@@ -21,13 +21,12 @@ pub(crate) struct Args {
     /// Write it as SVG too, to the same name with the ending .svg
     #[arg(long)]
     svg: bool,
-    /// Which two coordinates of the points
-    #[arg(long, value_name = "COORDINATE", num_args = 2, default_values_t = [1, 2])]
-    #[arg(value_parser = clap::value_parser!(u8).range(1..=8))]
-    axes: Vec<u8>,
-    /// Random integrands of each family whose error spectra are averaged, for tiles
-    #[arg(long, value_name = "COUNT", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=65536))]
-    integrands: u32,
+    /// Which two coordinates of the points [default: 1 2]
+    #[arg(long, value_name = "COORDINATE", num_args = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
+    axes: Option<Vec<u8>>,
+    /// Random integrands of each family whose error spectra are averaged, for tiles [default: 256]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=65536))]
+    integrands: Option<u32>,
     #[command(flatten)]
     tile: Tile,
     #[command(flatten)]
@@ -54,10 +53,16 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 }
 
 fn average(args: &Args) -> Result<(Spectrum, Subject)> {
+    args.tile.check(&args.files)?;
     let spectra: Vec<(Spectrum, Subject)> = args.files.iter().map(|path| one(args, path)).collect::<Result<_>>()?;
     let subject = spectra.first().map_or(Subject::Points, |s| s.1);
     if spectra.iter().any(|s| s.1 != subject) {
         return Err(Error::Input("point sets and tiles have different spectra: give files of one kind".into()));
+    }
+    match subject {
+        Subject::Points if args.integrands.is_some() => return Err(idle("--integrands", "tiles")),
+        Subject::Tile if args.axes.is_some() => return Err(idle("--axes", "point sets")),
+        _ => {}
     }
     let spectra: Vec<Spectrum> = spectra.into_iter().map(|s| s.0).collect();
     Ok((Spectrum::average(&spectra)?, subject))
@@ -67,17 +72,18 @@ fn one(args: &Args, path: &Path) -> Result<(Spectrum, Subject)> {
     match args.tile.read(path)? {
         Content::Points(table) => {
             let dims = table.points.dims();
-            let axes = [usize::from(args.axes[0]) - 1, usize::from(args.axes[1]) - 1];
+            let [first, second] = args.axes.as_deref().and_then(<[u8]>::first_chunk).copied().unwrap_or([1, 2]);
+            let axes = [usize::from(first) - 1, usize::from(second) - 1];
             if axes[0] == axes[1] || axes.iter().any(|&axis| axis >= dims) {
                 return Err(Error::Input(format!(
-                    "{}: a spectrum needs two different coordinates, not {} and {} of {dims}: see --axes",
-                    path.display(),
-                    args.axes[0],
-                    args.axes[1]
+                    "{}: a spectrum needs two different coordinates, not {first} and {second} of {dims}: see --axes",
+                    path.display()
                 )));
             }
             Ok((Spectrum::of_points(&table.points, axes)?, Subject::Points))
         }
-        Content::Tile(samples) => Ok((error_spectrum(&samples.view()?, args.integrands as usize)?, Subject::Tile)),
+        Content::Tile(samples) => {
+            Ok((error_spectrum(&samples.view()?, args.integrands.unwrap_or(256) as usize)?, Subject::Tile))
+        }
     }
 }

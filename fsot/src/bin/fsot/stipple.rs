@@ -75,6 +75,6 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
         "sigma_pixels": sigma,
         "run": run.json(),
     });
-    finish(outputs, [run])?;
+    finish(outputs, &run)?;
     args.common.print(args.copies.paths(), &text, &json)
 }

@@ -20,8 +20,8 @@ const INTEGRANDS: u32 = 512;
 /// What `fsot tile` is asked for.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// A tile that comes with noisefloor, such as 128_4SPP_2D: sets all that follows, and the number of steps
-    /// (`fsot info` lists them)
+    /// A tile that comes with noisefloor, such as 128_4SPP_2D: sets size, samples, kernels, shares and
+    /// the number of steps (`fsot info` lists them)
     #[arg(long, value_name = "NAME", conflicts_with_all = ["size", "spp", "d", "kernel", "reconstruction", "temporal"])]
     #[arg(conflicts_with_all = ["progressive", "box_share", "box_weight"])]
     preset: Option<String>,
@@ -115,7 +115,7 @@ fn make(args: &Args) -> Result<()> {
         outputs.add(path, &sidecar::encode(&sidecar)?)?;
     }
     let (text, json) = describe(out, &report, &run);
-    finish(outputs, [run])?;
+    finish(outputs, &run)?;
     args.common.print([], &text, &json)
 }
 

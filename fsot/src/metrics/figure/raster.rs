@@ -1,10 +1,10 @@
 //! A sheet as pixels.
 
 use super::sheet::{Anchor, Colour, Element, Sheet};
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::picture;
 use font8x8::UnicodeFonts;
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder, Rgb, RgbImage};
+use image::{Rgb, RgbImage};
 
 /// Letters of 8 by 8 cells: width and height of a cell in pixels.
 const CELL: [u32; 2] = [1, 2];
@@ -17,14 +17,10 @@ pub(super) fn png(sheet: &Sheet) -> Result<Vec<u8>> {
                 points.windows(2).for_each(|ends| segment(&mut image, ends[0], ends[1], *colour, *width));
             }
             Element::Text { at, anchor, text, colour } => words(&mut image, *at, *anchor, text, *colour),
-            Element::Picture { at, size, side, grey } => picture(&mut image, *at, *size, *side, grey),
+            Element::Picture { at, size, side, grey } => grey_picture(&mut image, *at, *size, *side, grey),
         }
     }
-    let mut bytes = Vec::new();
-    PngEncoder::new(&mut bytes)
-        .write_image(image.as_raw(), sheet.width, sheet.height, ExtendedColorType::Rgb8)
-        .map_err(|error| Error::Input(format!("cannot encode a picture: {error}")))?;
-    Ok(bytes)
+    picture::png(&image)
 }
 
 /// Covers a pixel by its distance to the segment.
@@ -80,7 +76,7 @@ fn words(image: &mut RgbImage, at: [f64; 2], anchor: Anchor, text: &str, colour:
 }
 
 /// Every pixel the mean of the cells it covers, or the cell that it is in.
-fn picture(image: &mut RgbImage, at: [f64; 2], size: f64, side: usize, grey: &[u8]) {
+fn grey_picture(image: &mut RgbImage, at: [f64; 2], size: f64, side: usize, grey: &[u8]) {
     let scale = side as f64 / size;
     let range = |pixel: u32| {
         let from = (f64::from(pixel) * scale) as usize;

@@ -1,9 +1,7 @@
 //! A drawing: lines, words and grey pictures.
 
-/// An RGB colour.
-pub(super) type Colour = [u8; 3];
+pub(super) use crate::picture::{BLACK, Colour};
 
-pub(super) const BLACK: Colour = [0, 0, 0];
 pub(super) const GREY: Colour = [170, 170, 170];
 
 /// A drawing, in pixels from the upper left.

@@ -1,7 +1,8 @@
 //! A sheet as SVG; its pictures are PNG files within.
 
-use super::sheet::{Anchor, Colour, Element, Sheet};
+use super::sheet::{Anchor, Element, Sheet};
 use crate::error::{Error, Result};
+use crate::picture::hex;
 use base64::Engine;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
@@ -19,7 +20,7 @@ pub(super) fn svg(sheet: &Sheet) -> Result<String> {
             Element::Line { points, colour, width } => {
                 let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
                 let line = Polyline::new().set("points", points.join(" ")).set("fill", "none");
-                document.add(line.set("stroke", name(*colour)).set("stroke-width", *width))
+                document.add(line.set("stroke", hex(*colour)).set("stroke-width", *width))
             }
             Element::Text { at, anchor, text, colour } => {
                 let anchor = match anchor {
@@ -28,7 +29,7 @@ pub(super) fn svg(sheet: &Sheet) -> Result<String> {
                     Anchor::End => "end",
                 };
                 let words = Text::new(text.as_str()).set("x", at[0]).set("y", at[1]).set("text-anchor", anchor);
-                document.add(words.set("font-family", "sans-serif").set("font-size", 15).set("fill", name(*colour)))
+                document.add(words.set("font-family", "sans-serif").set("font-size", 15).set("fill", hex(*colour)))
             }
             Element::Picture { at, size, side, grey } => {
                 let place = Image::new().set("x", at[0]).set("y", at[1]).set("width", *size).set("height", *size);
@@ -37,10 +38,6 @@ pub(super) fn svg(sheet: &Sheet) -> Result<String> {
         };
     }
     Ok(document.to_string())
-}
-
-fn name([red, green, blue]: Colour) -> String {
-    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 fn data(side: usize, grey: &[u8]) -> Result<String> {

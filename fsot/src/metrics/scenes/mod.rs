@@ -150,20 +150,24 @@ impl SceneTable {
 
     /// A pixel's integrand.
     fn at(&self, pixel: usize, [x, y]: [f32; 2]) -> f32 {
-        let place = |c: f32| (c * self.cells as f32 - 0.5).clamp(0.0, self.cells as f32 - 1.001);
+        let place = |c: f32| (c * self.cells as f32 - 0.5).clamp(0.0, (self.cells - 1) as f32);
         let (x, y) = (place(x), place(y));
-        let (column, row) = (x as usize, y as usize);
+        let (column, row) = ((x as usize).min(self.cells - 2), (y as usize).min(self.cells - 2));
         let (a, b) = (x - column as f32, y - row as f32);
         let values = &self.pixel(pixel)[row * self.cells + column..];
         let along = |values: &[f32]| (1.0 - a) * values[0] + a * values[1];
         (1.0 - b) * along(values) + b * along(&values[self.cells..])
     }
 
+    /// Exact. Each value has the same share of the mean. Of the squares, with two Gauss points between the middles of
+    /// cells, and one in each half cell at a border, where the integrand is constant, all weights are the same.
     fn moments_of(&self, pixel: usize) -> (f64, f64) {
+        /// Where they are in a cell: 1 / (2 sqrt 3), and as far from its end.
+        const GAUSS: [f32; 2] = [0.288_675_13, 0.711_324_9];
         let values = self.pixel(pixel);
         let mean = values.iter().map(|value| f64::from(*value)).sum::<f64>() / values.len() as f64;
         let fine = 2 * self.cells;
-        let place = |i: usize| (i as f32 + 0.5) / fine as f32;
+        let place = |i: usize| ((i / 2) as f32 + GAUSS[i % 2]) / self.cells as f32;
         let squares = (0..fine * fine).map(|i| {
             let offset = f64::from(self.at(pixel, [place(i % fine), place(i / fine)])) - mean;
             offset * offset
@@ -324,6 +328,27 @@ mod tests {
         let value = |i: usize| ((i % cells) as f32 + (i / cells) as f32 + 1.0) / cells as f32;
         let values = (0..side * side).flat_map(|_| (0..cells * cells).map(value)).collect();
         SceneTable::new([side; 2], cells, values)
+    }
+
+    /// Values that have nothing to do with their neighbours', and a step: as a sum over a fine grid says.
+    #[test]
+    fn moments_are_those_of_the_integrand() {
+        let cells = 8;
+        let mut rng = stream(7, 0, 0);
+        let noise = (0..cells * cells).map(|_| rng.uniform_f32());
+        let step = (0..cells * cells).map(|i| if i % cells < 3 { 0.0 } else { 1.0 });
+        let table = SceneTable::new([1, 2], cells, noise.chain(step).collect());
+        let fine = 64 * cells;
+        let place = |i: usize| (i as f32 + 0.5) / fine as f32;
+        for (pixel, (mean, variance)) in table.moments.iter().enumerate() {
+            let values = (0..fine * fine).map(|i| f64::from(table.at(pixel, [place(i % fine), place(i / fine)])));
+            let (sum, squares) =
+                values.fold((0.0, 0.0), |(sum, squares), value| (sum + value, squares + value * value));
+            let expected = sum / (fine * fine) as f64;
+            assert!((mean - expected).abs() < 1e-5, "{mean}, not {expected}");
+            let expected = squares / (fine * fine) as f64 - expected * expected;
+            assert!((variance / expected - 1.0).abs() < 1e-3, "{variance}, not {expected}");
+        }
     }
 
     /// x + y in every pixel: samples in the middle have no error, independent ones that of one random sample.

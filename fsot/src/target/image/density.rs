@@ -43,7 +43,8 @@ pub struct ImageTarget {
 
 impl ImageTarget {
     /// The density of `width * height` weights, row after row from the top, at a resolution that is adequate for
-    /// `points` points: about 8 cells for each (area averages of a larger picture), never less than 128 x 128.
+    /// `points` points: about 8 cells for each (area averages of a larger picture), 128 x 128 at least, but no side of
+    /// more than 4,096.
     ///
     /// # Errors
     ///
@@ -147,7 +148,7 @@ fn resolution(width: usize, height: usize, points: usize) -> (usize, usize) {
     let wanted = points.saturating_mul(CELLS_PER_POINT).max(MIN_CELLS) as f64;
     let pixels = width as f64 * height as f64;
     if pixels <= wanted {
-        // Whole blocks: a magnified picture is the same density exactly.
+        // Whole blocks, within the longest side: a magnified picture is the same density exactly.
         let factor = ((MIN_CELLS as f64 / pixels).sqrt().ceil() as usize).max(1);
         return ((width * factor).min(MAX_SIDE), (height * factor).min(MAX_SIDE));
     }

@@ -46,7 +46,7 @@ pub(crate) struct Args {
     /// The first frame follows the last one
     #[arg(long, requires = "frames")]
     pub(super) cyclic: bool,
-    /// Pixels on the longer side of the drawing [default: 8 times the mean distance between dots, at least 1024]
+    /// Pixels on the longer side of the drawing [default: dots are 8 apart in the mean; 1024 to 16384]
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(16..=20_000))]
     size: Option<u32>,
     #[command(flatten)]

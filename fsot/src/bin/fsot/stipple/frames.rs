@@ -90,7 +90,7 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
         "sigma_pixels": sigma,
         "run": run.json(),
     });
-    finish(outputs, [run])?;
+    finish(outputs, &run)?;
     args.common.print(args.copies.paths(), &text, &json)
 }
 
