@@ -181,8 +181,8 @@ mod tests {
         (0..2000).filter(misses).count()
     }
 
-    /// At 95 % the number that miss is binomial(2000, .05): within 100 +- 4 standard deviations of 9.7. Of 8 repetitions
-    /// 7 % miss: within 140 +- 4 of 11.4.
+    /// At 95 % the number that miss is binomial(2000, .05): within 100 +- 4 standard deviations of 9.7. Of 8
+    /// repetitions 7 % miss: within 140 +- 4 of 11.4.
     #[test]
     fn ratio_interval_covers() {
         for (repetitions, expected) in [(8, 95..=185), (32, 61..=139), (400, 61..=139)] {
