@@ -54,8 +54,8 @@ fn logarithms(cell: &Cell) -> Vec<f64> {
     cell.errors.chunks(CHANNELS).map(kind).collect()
 }
 
-/// `a`'s error over `b`'s, integrand by integrand, times `times`. Nothing accounts for `b` being the least of several on
-/// the same data.
+/// `a`'s error over `b`'s, integrand by integrand, times `times`. Nothing accounts for `b` being the least of several
+/// on the same data.
 fn excess(a: &Cell, b: &Cell, times: f64) -> [f64; 3] {
     let mut moments = Moments::default();
     logarithms(a).iter().zip(logarithms(b)).for_each(|(a, b)| moments.add(a - b));
