@@ -142,9 +142,57 @@ fn batch(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
     Ok(())
 }
 
+fn rectangle(source: &mut Source<'_>) -> Result<nf_cv_rectangle> {
+    Ok(nf_cv_rectangle { x: source.small(4)?, y: source.small(4)?, width: source.small(4)?, height: source.small(4)? })
+}
+
+fn is_zero(of: &nf_cv_rectangle) -> bool {
+    of.x | of.y | of.width | of.height == 0
+}
+
+/// What must be given for the pixels that are wanted, which is enough for them.
+fn needed(image: &nf_cv_image) -> nf_cv_rectangle {
+    let mut given = nf_cv_rectangle { x: 7, y: 7, width: 7, height: 7 };
+    // SAFETY: references are valid pointers.
+    if unsafe { nf_cv_image_needed(image, &mut given) } != NF_OK {
+        assert_eq!([given.x, given.y, given.width, given.height], [7; 4]);
+        return nf_cv_rectangle::default();
+    }
+    let enough = nf_cv_image { given, ..*image };
+    // SAFETY: as above.
+    let is_allowed = unsafe { nf_check(NF_CHECK_CV_IMAGE, from_ref(&enough).cast()) }.is_null();
+    // The one rule that it does not ask for is that of the number of pixels.
+    let pixels = [given.width, given.height, image.frames.max(1)].map(u128::from).iter().product::<u128>();
+    assert_eq!(is_allowed, pixels < 1 << 30);
+    given
+}
+
 fn shared(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
     let (width, height, frames) = (source.small(4)?, source.small(3)?, source.small(2)?);
-    let pixels = [width, height, frames.max(1)].iter().try_fold(1_u32, |a, &b| a.checked_mul(b)).unwrap_or(0) as usize;
+    let mut image = nf_cv_image {
+        width,
+        height,
+        frames,
+        window: source.small(5)?,
+        stride: source.small(5)?,
+        unordered: u32::from(source.rarely(4)?),
+        surfaces: null(),
+        factors: null(),
+        given: nf_cv_rectangle::default(),
+        wanted: if source.rarely(3)? { rectangle(source)? } else { nf_cv_rectangle::default() },
+    };
+    let whole = nf_cv_rectangle { x: 0, y: 0, width, height };
+    match source.any::<u8>()? % 4 {
+        0 => image.given = whole,
+        1 => image.given = needed(&image),
+        2 => image.given = rectangle(source)?,
+        _ => {}
+    }
+    let pixels = |of: &nf_cv_rectangle| {
+        [of.width, of.height, frames.max(1)].iter().try_fold(1_u32, |a, &b| a.checked_mul(b)).unwrap_or(0) as usize
+    };
+    let part = pixels(&image.wanted);
+    let pixels = pixels(if is_zero(&image.given) { &whole } else { &image.given });
     let n = usize::from(source.any::<u8>()? % 4);
     if pixels > 64 {
         return Ok(());
@@ -157,28 +205,10 @@ fn shared(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
     let known = source.array(all * channels, Source::number)?;
     let integrals = source.array(pixels * channels, |source| source.number().map(f32::abs))?;
     let has_known = source.rarely(3)?;
-    let whole = nf_cv_rectangle { x: 0, y: 0, width, height };
     // Now and then without the integrals.
     let has_integrals = has_known != source.rarely(9)?;
-    let mut wanted = nf_cv_rectangle::default();
-    if source.rarely(3)? {
-        for part in [&mut wanted.x, &mut wanted.y, &mut wanted.width, &mut wanted.height] {
-            *part = source.small(4)?;
-        }
-    }
-    let is_part = wanted.x | wanted.y | wanted.width | wanted.height != 0;
-    let image = nf_cv_image {
-        width,
-        height,
-        frames,
-        window: source.small(5)?,
-        stride: source.small(5)?,
-        unordered: u32::from(source.rarely(4)?),
-        surfaces: if source.any()? { surfaces.pointer() } else { null() },
-        factors: if source.any()? { factors.pointer() } else { null() },
-        given: if source.any()? { whole } else { nf_cv_rectangle::default() },
-        wanted,
-    };
+    image.surfaces = if source.any()? { surfaces.pointer() } else { null() };
+    image.factors = if source.any()? { factors.pointer() } else { null() };
     let samples = nf_cv_samples {
         known: if has_known { known.pointer() } else { null() },
         known_integrals: if has_integrals { integrals.pointer() } else { null() },
@@ -195,8 +225,7 @@ fn shared(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
         let (memory, size) = (workspace.pointer_mut().cast(), workspace.bytes());
         let mut out = vec![UNTOUCHED; pixels];
         let status = nf_cv_image_estimate(config, &image, &samples, memory, size, out.as_mut_ptr());
-        let part = wanted.width as usize * wanted.height as usize * frames.max(1) as usize;
-        let written = if is_part && status == NF_OK { part } else { pixels };
+        let written = if !is_zero(&image.wanted) && status == NF_OK { part } else { pixels };
         out.iter().take(written).for_each(|out| check(status, out));
     }
     Ok(())

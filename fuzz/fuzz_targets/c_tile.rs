@@ -111,6 +111,11 @@ fn draw_default(source: &mut Source<'_>) -> Result<()> {
     let dims = [source.small(5)?, source.small(5)?];
     // SAFETY: arrays have the lengths that the header asks for.
     unsafe {
+        for made in [nf_sampler_pixel(key, seed, domain, index), nf_sampler_white(key, seed, domain, index)] {
+            let mut all = [-1.0_f32; 4];
+            nf_sampler_draw(made, 4, all.as_mut_ptr());
+            assert!(all.iter().all(|u| (0.0..1.0).contains(u)), "{all:?}");
+        }
         let samplers = [sampler, nf_sampler_scramble(nf_sampler_domain(sampler, key), seed)];
         let mut all = [-1.0_f32; 4];
         nf_sampler_draw(samplers[1], dims[1], all.as_mut_ptr());
@@ -168,6 +173,9 @@ fn defaults_work() {
             assert_eq!(nf_tile_sampler_fill(&sampler, &2, 1, 1, 1, 1, u.as_mut_ptr(), 2), NF_OK);
         }
     }
+    // SAFETY: the header says how long it is.
+    let table = unsafe { std::slice::from_raw_parts(nf_sampler_table(), 1 << 16) };
+    assert!(table.iter().any(|&number| number != table[0]));
     let mut advice = MaybeUninit::uninit();
     // SAFETY: room for the answer.
     assert_eq!(unsafe { nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, f32::INFINITY, advice.as_mut_ptr()) }, NF_OK);

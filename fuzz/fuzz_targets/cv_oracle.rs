@@ -34,7 +34,7 @@ fn run(bytes: &[u8]) -> Result<()> {
         Regression::fit(&design, &f, ridge).intercept
     };
     let largest = f.iter().fold(1.0_f64, |largest, f| largest.max(f.abs()));
-    assert!((found - expected).abs() < 1e-4 * largest, "{config:?}, {n} samples: {found}, the oracle {expected}");
+    assert!((found - expected).abs() < 1e-6 * largest, "{config:?}, {n} samples: {found}, the oracle {expected}");
     Ok(())
 }
 

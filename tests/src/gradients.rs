@@ -1,6 +1,7 @@
 //! Problems of minibatch gradients, and errors of the gradient's estimates. Seeds are fixed.
 
 use crate::minibatch::{Problem, Z_LIMIT};
+use crate::statistics::maximum;
 use noisefloor::minibatch::importance::{self, Softmax, Split};
 use noisefloor::mis::{DEFAULT_RIDGE, Solver};
 use noisefloor::rng::Rng;
@@ -69,7 +70,7 @@ impl Moments {
     pub fn largest_z(&self) -> f64 {
         let n = self.count;
         let z = |(sum, squares): (&f64, &f64)| sum / n / ((squares / n - (sum / n).powi(2)) / n).sqrt();
-        self.sum.iter().zip(&self.squares).map(z).fold(0.0, |largest, z| f64::max(largest, z.abs()))
+        maximum(self.sum.iter().zip(&self.squares).map(z).map(f64::abs))
     }
 }
 
@@ -224,5 +225,5 @@ pub fn bias(problem: &Problem, batch: usize, solver: Solver, batches: usize) -> 
     let size: f64 = problem.exact().iter().map(|g| g * g).sum();
     let counts = vec![batch / problem.techniques; problem.techniques];
     let all = moments(problem, &counts, solver, batches, 20);
-    [all.squared_bias().max(0.0), all.error()].map(|square| (square / size).sqrt())
+    [maximum([all.squared_bias()]), all.error()].map(|square| (square / size).sqrt())
 }

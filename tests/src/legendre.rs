@@ -50,6 +50,18 @@ pub fn degree(term: &[usize]) -> usize {
     term.iter().sum()
 }
 
+/// Nodes and weights of the 8-point Gauss-Legendre rule on [0, 1]: exact to degree 15.
+pub fn gauss_legendre() -> Vec<(f64, f64)> {
+    // On [-1, 1], those above 0.
+    let half = [
+        (0.183_434_642_495_649_8, 0.362_683_783_378_362),
+        (0.525_532_409_916_329, 0.313_706_645_877_887_3),
+        (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
+        (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
+    ];
+    half.iter().flat_map(|&(x, weight)| [0.5 - 0.5 * x, 0.5 + 0.5 * x].map(|x| (x, 0.5 * weight))).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -65,17 +77,9 @@ mod tests {
     /// 16 midpoints per subinterval are not exact; 8-point Gauss-Legendre on [0, 1] is, up to degree 15.
     #[test]
     fn orthonormal_under_gauss_legendre() {
-        let nodes = [0.183_434_642_495_649_8, 0.525_532_409_916_329, 0.796_666_477_413_626_7, 0.960_289_856_497_536_3];
-        let weights =
-            [0.362_683_783_378_362, 0.313_706_645_877_887_3, 0.222_381_034_453_374_5, 0.101_228_536_290_376_3];
         for a in 0..=7 {
             for b in 0..=7 {
-                let mut sum = 0.0;
-                for (x, w) in nodes.iter().zip(weights) {
-                    for x in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
-                        sum += 0.5 * w * legendre(a, x) * legendre(b, x);
-                    }
-                }
+                let sum: f64 = gauss_legendre().iter().map(|(x, w)| w * legendre(a, *x) * legendre(b, *x)).sum();
                 assert!((sum - f64::from(u8::from(a == b))).abs() < 1e-12, "{a} {b} {sum}");
             }
         }

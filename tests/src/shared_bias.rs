@@ -3,7 +3,7 @@
 use crate::planar::Planar;
 use crate::random::SplitMix64;
 use crate::shared::image;
-use crate::statistics::Moments;
+use crate::statistics::{Moments, maximum};
 use noisefloor::control_variate::{Config, Image, Samples};
 use noisefloor::tile::{Builtin, Sampler};
 
@@ -46,9 +46,9 @@ pub fn bias(
         let square = means.mean().powi(2) / all.mean() - noise;
         squares.add(square);
         chance.add(noise);
-        largest = largest.max(square);
+        largest = maximum([largest, square]);
     }
-    Bias { typical: squares.mean().max(0.0).sqrt(), largest: largest.sqrt(), chance: chance.mean().sqrt() }
+    Bias { typical: maximum([squares.mean()]).sqrt(), largest: largest.sqrt(), chance: chance.mean().sqrt() }
 }
 
 /// Independent samples of `pixels` pixels, one in each.
@@ -138,8 +138,8 @@ pub fn bias_of_pixels(config: &Config, n: usize, frames: usize) -> Bias {
         let own = |errors: &Moments| errors.mean().powi(2) - errors.standard_error().powi(2);
         let square = errors.iter().map(own).sum::<f64>() / errors.len() as f64 / all.mean();
         squares.add(square);
-        largest = largest.max(square);
+        largest = maximum([largest, square]);
     }
     let chance = (1.0 / frames as f64).sqrt();
-    Bias { typical: squares.mean().max(0.0).sqrt(), largest: largest.sqrt(), chance }
+    Bias { typical: maximum([squares.mean()]).sqrt(), largest: largest.sqrt(), chance }
 }

@@ -52,7 +52,8 @@ impl FromIterator<f64> for Moments {
     }
 }
 
-/// A ratio and its 95 % confidence interval.
+/// A ratio and its 95 % confidence interval, which of few repetitions holds the truth less often: of 8 in 93 % of all
+/// cases, where tails are heavy in 90 %; of hundreds in 95 %.
 #[derive(Clone, Copy, Debug)]
 pub struct Ratio {
     /// The estimate.
@@ -67,8 +68,7 @@ impl Ratio {
         self.value + self.half_width
     }
 
-    /// The lower end: the interval is of the logarithm. Of 8 repetitions 93 % of these intervals hold the truth (148 of
-    /// 2000 miss, 204 of heavy tails), where those as wide on both sides keep 95 %.
+    /// The lower end: the interval is of the logarithm.
     pub fn lower(&self) -> f64 {
         if self.half_width == 0.0 { self.value } else { self.value * (self.value / self.upper()) }
     }
@@ -77,7 +77,8 @@ impl Ratio {
 /// RMSE(a) / RMSE(b) of paired errors. The jackknife tells the standard error of the logarithm (Efron and Tibshirani
 /// 1993, chapter 11), which few repetitions and heavy tails do not shrink as they do the delta method's; Student's
 /// quantile goes with it, and the interval's ends are as far from the value in logarithms; the upper, longer side is
-/// kept. Two sets of zero errors give 1; one is exact where the other is not: 0 or infinity.
+/// kept. Two sets of zero errors give 1; one is exact where the other is not: 0 or infinity. Panics on NaN, which no
+/// bound would notice.
 pub fn rmse_ratio(a: &[f64], b: &[f64]) -> Ratio {
     assert_eq!(a.len(), b.len());
     let squares = |errors: &[f64]| errors.iter().map(|e| e * e).sum::<f64>();
@@ -86,6 +87,7 @@ pub fn rmse_ratio(a: &[f64], b: &[f64]) -> Ratio {
         return Ratio { value: 1.0, half_width: 0.0 };
     }
     let value = (square_a / square_b).sqrt();
+    assert!(!value.is_nan(), "{square_a} / {square_b}");
     if value == 0.0 || value == f64::INFINITY {
         return Ratio { value, half_width: 0.0 };
     }
@@ -118,6 +120,11 @@ pub fn geometric_mean(values: &[f64]) -> f64 {
     (values.iter().map(|v| v.ln()).sum::<f64>() / values.len() as f64).exp()
 }
 
+/// The largest of the values, or 0 if none is above; NaN if one of them is, which `f64::max` would pass over.
+pub fn maximum(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |a, b| if a.is_nan() || a >= b { a } else { b })
+}
+
 /// The root of the mean of squares.
 pub fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
@@ -130,13 +137,24 @@ pub fn median(values: &[f64]) -> f64 {
     (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]) / 2.0
 }
 
-/// Pearson's statistic of observed counts against expected ones, and its two-sided z by the Wilson-Hilferty cube root
-/// with `cells - 1` degrees of freedom (good to .01 in z from 4 degrees on).
+/// Pearson's statistic of observed counts against expected ones, and its z with `cells - 1` degrees of freedom.
 pub fn chi_square(observed: &[f64], expected: &[f64]) -> (f64, f64) {
     let statistic = observed.iter().zip(expected).map(|(o, e)| (o - e) * (o - e) / e).sum::<f64>();
-    let freedom = observed.len() as f64 - 1.0;
+    (statistic, wilson_hilferty(statistic, observed.len() as f64 - 1.0))
+}
+
+/// A chi-square as a normal deviate, by its cube root (Wilson and Hilferty 1931; good to .01 from 4 degrees of freedom
+/// on).
+pub fn wilson_hilferty(statistic: f64, freedom: f64) -> f64 {
     let spread = 2.0 / (9.0 * freedom);
-    (statistic, ((statistic / freedom).cbrt() - (1.0 - spread)) / spread.sqrt())
+    ((statistic / freedom).cbrt() - (1.0 - spread)) / spread.sqrt()
+}
+
+/// The z of counts that are the same but for chance.
+pub fn uniform_z(counts: &[u64]) -> f64 {
+    let counts: Vec<f64> = counts.iter().map(|&count| count as f64).collect();
+    let mean = counts.iter().sum::<f64>() / counts.len() as f64;
+    chi_square(&counts, &vec![mean; counts.len()]).1
 }
 
 #[cfg(test)]
@@ -158,27 +176,28 @@ mod tests {
             let b: Vec<f64> = scales.iter().map(|scale| scale * rng.normal()).collect();
             let a: Vec<f64> = b.iter().zip(&scales).map(|(b, scale)| 0.4 * b + 0.3 * scale * rng.normal()).collect();
             let ratio = rmse_ratio(&a, &b);
-            (ratio.value - 0.5).abs() > ratio.half_width
+            !(ratio.lower()..=ratio.upper()).contains(&0.5)
         };
         (0..2000).filter(misses).count()
     }
 
-    /// At 95 % the number that miss is binomial(2000, .05): within 100 +- 4 standard deviations of 9.7.
+    /// At 95 % the number that miss is binomial(2000, .05): within 100 +- 4 standard deviations of 9.7. Of 8
+    /// repetitions 7 % miss: within 140 +- 4 of 11.4.
     #[test]
     fn ratio_interval_covers() {
-        for repetitions in [8, 32, 400] {
+        for (repetitions, expected) in [(8, 95..=185), (32, 61..=139), (400, 61..=139)] {
             let missed = missed(repetitions, 0.0);
-            assert!((61..=139).contains(&missed), "{missed} of 2000, {repetitions} repetitions");
+            assert!(expected.contains(&missed), "{missed} of 2000, {repetitions} repetitions");
         }
     }
 
-    /// Scales that vary by a factor of 2 (one standard deviation): few repetitions hardly show the largest. One in 14
-    /// misses; one in ten would be 5 standard deviations more.
+    /// Scales that vary by a factor of 2 (one standard deviation): few repetitions hardly show the largest. One in ten
+    /// misses; one in eight would be four standard deviations more.
     #[test]
     fn ratio_interval_of_heavy_tails() {
         for repetitions in [8, 16, 100] {
             let missed = missed(repetitions, 0.7);
-            assert!(missed <= 200, "{missed} of 2000, {repetitions} repetitions");
+            assert!(missed <= 220, "{missed} of 2000, {repetitions} repetitions");
         }
     }
 
@@ -224,5 +243,19 @@ mod tests {
     fn averages() {
         assert!((geometric_mean(&[0.5, 2.0, 8.0]) - 2.0).abs() < 1e-15);
         assert_eq!(median(&[3.0, 1.0, 2.0, 10.0]), 2.5);
+    }
+
+    #[test]
+    fn maxima_show_what_is_no_number() {
+        assert_eq!((maximum([]), maximum([1.0, 3.0, 2.0])), (0.0, 3.0));
+        for values in [[f64::NAN, 1.0], [1.0, f64::NAN], [f64::INFINITY, f64::NAN]] {
+            assert!(maximum(values).is_nan(), "{values:?}");
+        }
+    }
+
+    #[test]
+    #[should_panic = "NaN"]
+    fn no_ratio_has_an_error_that_is_no_number() {
+        rmse_ratio(&[1.0, f64::NAN], &[2.0, 3.0]);
     }
 }

@@ -4,15 +4,8 @@ use crate::cv_support::*;
 use noisefloor::Error;
 use noisefloor::basis::{Basis, Family};
 use noisefloor::control_variate::{Color, Config, Estimator, Optimizer, Ridge, Solver};
+use noisefloor_tests::legendre::gauss_legendre;
 use noisefloor_tests::random::SplitMix64;
-
-/// 8-point Gauss-Legendre nodes and weights on [0, 1]: exact to degree 15.
-const NODES: [(f64, f64); 4] = [
-    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-    (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
-    (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
-];
 
 fn with_basis(family: Family, dims: usize, order: usize, slices: usize) -> Config {
     Config { basis: family, slices, ..Config::new(dims, order, 1) }
@@ -61,10 +54,7 @@ fn quadrature(family: Family) -> Vec<(f32, f64)> {
     };
     let rule: Vec<(f64, f64)> = match family {
         Family::Step | Family::Sine => vec![(0.5, 1.0)],
-        Family::Legendre | Family::Gaussian => {
-            let both = |&(x, weight): &(f64, f64)| [0.5 - 0.5 * x, 0.5 + 0.5 * x].map(|x| (x, 0.5 * weight));
-            NODES.iter().flat_map(both).collect()
-        }
+        Family::Legendre | Family::Gaussian => gauss_legendre(),
     };
     let count = f64::from(parts);
     let part = |i: i32| rule.iter().map(move |(x, w)| (((f64::from(i) + x) / count) as f32, w / count));

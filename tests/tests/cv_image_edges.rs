@@ -9,7 +9,7 @@ use noisefloor::control_variate::{
 };
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::image;
-use noisefloor_tests::statistics::Moments;
+use noisefloor_tests::statistics::{Moments, maximum};
 use std::f64::consts::PI;
 use std::ffi::CStr;
 
@@ -127,7 +127,7 @@ fn k_fold_is_unbiased() {
                 let errors = [left + right, left - right, all[0], all[7], all[27], all[36], all[PIXELS - 1]];
                 tested.iter_mut().zip(errors).for_each(|(moments, error)| moments.add(error));
             }
-            let z = tested.iter().map(|moments| moments.z(0.0).abs()).fold(0.0, f64::max);
+            let z = maximum(tested.iter().map(|moments| moments.z(0.0).abs()));
             println!("{shadow:?}, window {window}: |z| <= {z:.2}");
             assert!(z < Z_LIMIT, "{shadow:?} {window}: {z}");
         }

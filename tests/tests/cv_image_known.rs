@@ -5,7 +5,7 @@ use noisefloor::Error;
 use noisefloor::control_variate::{Config, Estimator, Image, Ridge, Samples, image_workspace_len};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::image;
-use noisefloor_tests::statistics::Moments;
+use noisefloor_tests::statistics::{Moments, maximum};
 
 const WIDTH: usize = 8;
 const PIXELS: usize = WIDTH * WIDTH;
@@ -246,7 +246,7 @@ fn unbiased_alone() {
             let means = frame.means(&alone(1), &Image { known_integrals: &integrals, ..frame.image() });
             biased.add(means.iter().zip(&truth).map(|(mean, truth)| mean - truth).sum::<f64>() / PIXELS as f64);
         }
-        largest = errors.iter().map(|moments| moments.z(0.0).abs()).fold(largest, f64::max);
+        largest = maximum(errors.iter().map(|moments| moments.z(0.0).abs()).chain([largest]));
         wrong = wrong.max(biased.z(0.0).abs());
     }
     println!("z {largest:.1}, with wrong integrals {wrong:.1}");

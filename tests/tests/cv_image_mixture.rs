@@ -7,6 +7,7 @@ use noisefloor_tests::legendre;
 use noisefloor_tests::oracle::{Design, Regression, pixels};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::{block, image};
+use noisefloor_tests::statistics::maximum;
 
 /// Within this of the largest value, of the gain, and of the standard error.
 const TOLERANCE: f64 = 1e-4;
@@ -509,13 +510,13 @@ impl Case {
         let mut errors = [0.0_f64; 3];
         for ((estimate, expected), own) in self.estimates().iter().zip(&expected).zip(self.f.chunks(2 * self.n)) {
             let scale = usual.max(largest(own));
-            errors[1] = errors[1].max((f64::from(estimate.gain) - expected.gain).abs());
+            errors[1] = maximum([errors[1], (f64::from(estimate.gain) - expected.gain).abs()]);
             for channel in 0..2 {
                 let error = (f64::from(estimate.mean[channel]) - expected.means[channel]).abs();
-                errors[0] = errors[0].max(error / scale);
+                errors[0] = maximum([errors[0], error / scale]);
                 let pair = [f64::from(estimate.std_error[channel]), expected.std_errors[channel]];
                 if pair[0] != pair[1] {
-                    errors[2] = errors[2].max((pair[0] - pair[1]).abs() / scale.max(pair[1]));
+                    errors[2] = maximum([errors[2], (pair[0] - pair[1]).abs() / scale.max(pair[1])]);
                 }
             }
         }

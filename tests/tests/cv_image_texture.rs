@@ -7,6 +7,7 @@ use crate::cv_support::points;
 use noisefloor::control_variate::{Config, Estimator, Image, Samples, image_workspace_len};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::image;
+use noisefloor_tests::statistics::maximum;
 
 const SIDE: usize = 32;
 const PIXELS: usize = SIDE * SIDE;
@@ -74,7 +75,7 @@ fn score(
                 score.squares[k] += errors[k] * errors[k];
                 score.covered[k] += usize::from(errors[k].abs() <= 2.0 * told[k] + 1e-7);
             }
-            score.largest = score.largest.max((f64::from(estimate.mean[0]) - f64::from(own[0])).abs());
+            score.largest = maximum([score.largest, (f64::from(estimate.mean[0]) - f64::from(own[0])).abs()]);
         }
     }
     score
@@ -155,9 +156,9 @@ fn one_sample_needs_to_be_told() {
             for sigma in SIGMAS {
                 let base = Image::new(SIDE, SIDE);
                 let of = |image: &Image<'_>| ratio(&score(&configs()[0], &texture, image, 1, (sigma, deviate)));
-                by_factors = by_factors.max(of(&Image { factors: &factors, surfaces: &black, ..base }));
+                by_factors = maximum([by_factors, of(&Image { factors: &factors, surfaces: &black, ..base })]);
                 if has_levels {
-                    by_surfaces = by_surfaces.max(of(&Image { surfaces: &surfaces, ..base }));
+                    by_surfaces = maximum([by_surfaces, of(&Image { surfaces: &surfaces, ..base })]);
                 }
                 blind = blind.max(of(&base));
             }

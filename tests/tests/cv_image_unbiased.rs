@@ -12,7 +12,7 @@ use noisefloor_tests::planar::Planar;
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::image;
 use noisefloor_tests::shared_bias::{bias, independent, of_tile};
-use noisefloor_tests::statistics::Moments;
+use noisefloor_tests::statistics::{Moments, maximum};
 
 const Z_LIMIT: f64 = 4.75;
 const WIDTH: usize = 6;
@@ -107,7 +107,7 @@ impl Errors {
 
     /// The largest |z|.
     fn z(&self) -> f64 {
-        self.tested.iter().map(|moments| moments.z(0.0).abs()).fold(0.0, f64::max)
+        maximum(self.tested.iter().map(|moments| moments.z(0.0).abs()))
     }
 }
 

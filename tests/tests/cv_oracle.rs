@@ -440,7 +440,7 @@ fn skipped_samples_were_never_there() {
     assert!((kept.mean[0] - bad.mean[0]).abs() < kept.std_error[0]);
 }
 
-/// 200,000 steps of each rule end where least squares is.
+/// 20,000 steps of each rule end where least squares is.
 #[test]
 fn gradient_descent_converges() {
     let (u, f) = noisy(60, 2, 1100);

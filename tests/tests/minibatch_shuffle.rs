@@ -1,7 +1,7 @@
 //! The permutation that is computed one element at a time. Seeds are fixed.
 
 use noisefloor::minibatch::shuffle;
-use noisefloor_tests::statistics::chi_square;
+use noisefloor_tests::statistics::{chi_square, wilson_hilferty};
 
 #[test]
 fn every_element_once() {
@@ -42,9 +42,7 @@ fn positions_are_uniform() {
         let expected = SEEDS as f64 / f64::from(n);
         let statistic: f64 = counts.iter().map(|count: &f64| (count - expected).powi(2) / expected).sum();
         let freedom = f64::from((n - 1) * (n - 1));
-        // Wilson and Hilferty, as in `chi_square`; with one degree of freedom the square root is normal.
-        let spread = 2.0 / (9.0 * freedom);
-        let z = ((statistic / freedom).cbrt() - (1.0 - spread)) / spread.sqrt();
+        let z = wilson_hilferty(statistic, freedom);
         println!("{n}: chi-square {statistic:.1}, z {z:.2}");
         assert!(z < 3.72, "{n} items: z = {z:.2}");
     }

@@ -8,12 +8,16 @@ use noisefloor::rng::Rng;
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::statistics::Moments;
 
-/// Values about as large as the importances, but for noise; and their mean.
-fn values(importance: &[f32], seed: u64) -> (Vec<f64>, f64) {
+/// Values about as large as the importances, but for noise.
+fn values(importance: &[f32], seed: u64) -> Vec<f64> {
     let mut rng = SplitMix64::new(seed);
-    let values: Vec<f64> = importance.iter().map(|&q| f64::from(q) * (0.5 + rng.uniform()) + rng.uniform()).collect();
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    (values, mean)
+    importance.iter().map(|&q| f64::from(q) * (0.5 + rng.uniform()) + rng.uniform()).collect()
+}
+
+/// What batches estimate of values: the sum of those that can be drawn over the number of all.
+fn mean(values: &[f64], importance: &[f32], fraction: f32) -> f64 {
+    let drawn = values.iter().zip(importance).filter(|&(_, &q)| fraction > 0.0 || q > 0.0);
+    drawn.map(|(value, _)| value).sum::<f64>() / values.len() as f64
 }
 
 fn estimate(index: &[u32], weight: &[f32], values: &[f64]) -> f64 {
@@ -21,13 +25,14 @@ fn estimate(index: &[u32], weight: &[f32], values: &[f64]) -> f64 {
 }
 
 /// Importances, of some of which the table's are out of date or 0.
-fn cases(items: usize) -> [(&'static str, Vec<f32>, f32); 5] {
+fn cases(items: usize) -> [(&'static str, Vec<f32>, f32); 6] {
     let spread = lognormal(items, 1.0, 5);
-    let zeros = spread.iter().enumerate().map(|(i, &q)| if i % 3 == 0 { 0.0 } else { q }).collect();
+    let zeros: Vec<f32> = spread.iter().enumerate().map(|(i, &q)| if i % 3 == 0 { 0.0 } else { q }).collect();
     [
         ("lognormal", spread.clone(), 0.0),
         ("lognormal with uniform draws", spread.clone(), 0.2),
-        ("zeros", zeros, 0.5),
+        ("zeros", zeros.clone(), 0.5),
+        ("zeros, never drawn", zeros, 0.0),
         ("all zero", vec![0.0; items], 0.1),
         ("uniform", spread, 1.0),
     ]
@@ -38,7 +43,8 @@ fn batches_are_unbiased() {
     const BATCH: usize = 24;
     for (number, (name, importance, fraction)) in cases(300).into_iter().enumerate() {
         let table = table(&importance, fraction);
-        let (values, mean) = values(&lognormal(300, 1.0, 5), 6);
+        let values = values(&lognormal(300, 1.0, 5), 6);
+        let [mean, whole] = [&values[..], &[1.0; 300]].map(|values| mean(values, &importance, fraction));
         let mut rng = Rng::seed(number as u64);
         let [mut plain, mut stratified, mut weights] = [(); 3].map(|()| Moments::default());
         let (mut index, mut weight) = ([0; BATCH], [0.0; BATCH]);
@@ -49,7 +55,7 @@ fn batches_are_unbiased() {
             table.draw_stratified(&mut rng, &mut index, Some(&mut weight)).unwrap();
             stratified.add(estimate(&index, &weight, &values) / BATCH as f64);
         }
-        for (way, z) in [("draw", plain.z(mean)), ("stratified", stratified.z(mean)), ("weights", weights.z(1.0))] {
+        for (way, z) in [("draw", plain.z(mean)), ("stratified", stratified.z(mean)), ("weights", weights.z(whole))] {
             assert!(z.abs() < Z_LIMIT, "{name}, {way}: z = {z:.2}");
         }
         println!("{name}: variance {:.4}, stratified {:.4}", plain.variance(), stratified.variance());
@@ -76,10 +82,12 @@ fn stratified_draws_follow_the_data_set() {
 fn distinct_batches_are_unbiased() {
     for items in [20, 60] {
         for (number, (name, importance, fraction)) in cases(items).into_iter().enumerate() {
-            let (values, mean) = values(&lognormal(items, 1.0, 5), 6);
+            let values = values(&lognormal(items, 1.0, 5), 6);
+            let mean = mean(&values, &importance, fraction);
             let mut table = table(&importance, fraction);
             for batch in [1, 7, items / 2, items] {
-                if fraction == 0.0 && importance.contains(&0.0) {
+                // Items that are never drawn are in no batch of all.
+                if batch == items && fraction == 0.0 && importance.contains(&0.0) {
                     continue;
                 }
                 let mut rng = Rng::seed((100 * batch + number) as u64);
@@ -118,12 +126,8 @@ fn shards_are_unbiased() {
         let all = Shard::sum(shards.iter().copied()).unwrap();
         assert_eq!(all.items, 440);
         // Values as large as the importances, but for the third shard's, which is drawn far too often.
-        let values = [values(&importance[0], 3).0, values(&importance[1], 4).0, values(&[1.0; 17], 5).0];
-        // What is never drawn is not estimated.
-        let drawn = |q: f32| fraction > 0.0 || q > 0.0;
-        let sum: f64 =
-            values.iter().flatten().zip(importance.iter().flatten()).filter(|(_, q)| drawn(**q)).map(|(v, _)| v).sum();
-        let mean = sum / 440.0;
+        let values = [values(&importance[0], 3), values(&importance[1], 4), values(&[1.0; 17], 5)];
+        let mean = mean(&values.concat(), &importance.concat(), fraction);
         let share = shards.iter().map(|shard| {
             let d = f64::from(fraction);
             (1.0 - d) * shard.importance / all.importance + d * shard.items as f64 / 440.0

@@ -1,9 +1,10 @@
 //! The accumulator of optimal MIS (2.15): its algebra, its limits and its errors. Statistics are in mis_statistics.rs.
 
-use crate::mis_support::{Problem, Sample, Technique, problems, solve};
+use crate::mis_support::{Problem, Sample, Technique, problems};
 use noisefloor::Error;
 use noisefloor::mis::{self, DEFAULT_RIDGE, OptimalMis, RIDGE_RANGE, Solver, optimal_contribution};
 use noisefloor::rng::Rng;
+use noisefloor_tests::oracle::least_squares;
 use proptest::prelude::*;
 
 const SOLVERS: [Solver; 4] = [Solver::Ridge(DEFAULT_RIDGE), Solver::Plain, Solver::Progressive, Solver::Balance];
@@ -77,7 +78,7 @@ fn solvers_match_the_oracle() {
         omis.alpha(Solver::Plain, &mut found).unwrap();
         assert_close(estimate(&omis, Solver::Plain), found.iter().map(|&a| f64::from(a)).sum(), 1e-6, problem.name);
         if problem.independent {
-            for (&found, &expected) in found.iter().zip(&solve(a.clone(), b.clone())) {
+            for (&found, &expected) in found.iter().zip(&least_squares(&a, &b)) {
                 assert_close(found, expected, 1e-5, problem.name);
             }
         }
@@ -90,7 +91,7 @@ fn solvers_match_the_oracle() {
             for (k, row) in ridged.iter_mut().enumerate() {
                 row[k] += differences.max(1e-8 * trace) / n(k);
             }
-            let alpha = solve(ridged, b.clone());
+            let alpha = least_squares(&ridged, &b);
             let expected = g / r - (0..j).map(|k| (q[k] / r - 1.0) * alpha[k]).sum::<f64>();
             assert_close(estimate(&omis, Solver::Ridge(ridge)), expected, 1e-6, problem.name);
             omis.alpha(Solver::Ridge(ridge), &mut found).unwrap();
@@ -381,7 +382,7 @@ fn decay_weighs_old_samples_less() {
             a[i][k] = 0.25 * a[i][k] + a2[i][k];
         }
     }
-    assert_close(estimate(&omis, Solver::Plain), solve(a, b).iter().sum(), 1e-6, "plain");
+    assert_close(estimate(&omis, Solver::Plain), least_squares(&a, &b).iter().sum(), 1e-6, "plain");
 
     omis.decay(0.0).unwrap();
     assert_eq!(omis.solve(Solver::Plain, &mut [0.0]), Err(Error::NoSamples));

@@ -2,9 +2,10 @@
 //!
 //! Seeds are fixed. Each z-test is at significance 1e-5.
 
-use crate::mis_support::{Moments, Problem, Z_LIMIT, problems};
+use crate::mis_support::{Problem, Z_LIMIT, problems, z};
 use noisefloor::mis::{self, OptimalMis, Solver, optimal_contribution};
 use noisefloor::rng::Rng;
+use noisefloor_tests::statistics::Moments;
 
 const LEN: usize = mis::len(3, 1);
 
@@ -45,7 +46,7 @@ fn balance_and_progressive_are_unbiased() {
             progressive.add(p);
         }
         for (name, moments) in [("balance", balance), ("progressive", progressive)] {
-            let z = moments.z(problem.integral);
+            let z = z(&moments, problem.integral);
             assert!(z.abs() < Z_LIMIT, "{}, {name}: z = {z:.2}", problem.name);
         }
     }
@@ -77,10 +78,15 @@ fn samples_of_value_zero_count() {
         defect.add(total + nonzero.1);
         skipped.add(nonzero.0);
     }
-    assert!(right.z(problem.integral).abs() < Z_LIMIT);
-    assert!(defect.z(problem.integral).abs() > 20.0);
-    assert!(skipped.z(problem.integral).abs() < Z_LIMIT);
-    assert!(skipped.std_error() > 1.02 * right.std_error(), "{} {}", skipped.std_error(), right.std_error());
+    assert!(z(&right, problem.integral).abs() < Z_LIMIT);
+    assert!(z(&defect, problem.integral).abs() > 20.0);
+    assert!(z(&skipped, problem.integral).abs() < Z_LIMIT);
+    assert!(
+        skipped.standard_error() > 1.02 * right.standard_error(),
+        "{} {}",
+        skipped.standard_error(),
+        right.standard_error()
+    );
 
     // What the accumulator's documentation warns of: without the zeros even the number of rounds is wrong.
     let mut moments = [(); 2].map(|()| Moments::default());
@@ -88,7 +94,7 @@ fn samples_of_value_zero_count() {
         let values = estimates(problem, &mut rng, 6, 2, [Solver::Progressive, Solver::Balance], |value| value != 0.0);
         moments.iter_mut().zip(values).for_each(|(m, v)| m.add(v));
     }
-    assert!(moments.iter().all(|m| m.z(problem.integral) > 20.0));
+    assert!(moments.iter().all(|m| z(m, problem.integral) > 20.0));
 }
 
 /// Random choice of the technique, with probabilities in proportion to the counts, is unbiased too.
@@ -120,33 +126,45 @@ fn techniques_may_be_chosen_at_random() {
             progressive.add(out[0].into());
         }
         for moments in [balance, progressive] {
-            let z = moments.z(problem.integral);
+            let z = z(&moments, problem.integral);
             assert!(z.abs() < Z_LIMIT, "{}: z = {z:.2}", problem.name);
         }
     }
 }
 
-/// The bias of the ridge and plain solvers exists, and falls as fast as the variance: in proportion to 1/R.
+/// The bias of the ridge and plain solvers exists, and falls as fast as the variance: in proportion to 1/R, which from
+/// R = 4 to 16 is not yet exact, within half of itself.
 #[test]
 fn ridge_and_plain_are_consistent_not_unbiased() {
     let solvers = [Solver::default(), Solver::Plain];
     let mut biased = [false; 2];
     for (seed, problem) in problems().iter().enumerate() {
         let mut rng = Rng::seed(200 + seed as u64);
+        let mut at_4 = [(0.0, 0.0); 2];
         for (rounds, trials) in [(4, 100_000), (16, 40_000), (256, 4_000)] {
             let mut moments = [(); 2].map(|()| Moments::default());
             for _ in 0..trials {
                 let values = estimates(problem, &mut rng, rounds, rounds, solvers, |_| true);
                 moments.iter_mut().zip(values).for_each(|(m, v)| m.add(v));
             }
-            for ((m, biased), solver) in moments.iter().zip(&mut biased).zip(solvers) {
-                let (bias, error) = (m.mean() - problem.integral, m.std_error());
+            for (((m, biased), at_4), solver) in moments.iter().zip(&mut biased).zip(&mut at_4).zip(solvers) {
+                let (bias, error) = (m.mean() - problem.integral, m.standard_error());
                 println!(
                     "{} {solver:?} R {rounds}: bias {bias:.2e} +- {error:.1e}, sd {:.2e}",
                     problem.name,
                     error * f64::from(trials).sqrt()
                 );
-                *biased |= rounds == 4 && m.z(problem.integral).abs() > Z_LIMIT;
+                if rounds == 4 {
+                    *biased |= z(m, problem.integral).abs() > Z_LIMIT;
+                    *at_4 = (bias, error);
+                } else if rounds == 16 {
+                    let allowed = Z_LIMIT * at_4.1.hypot(4.0 * error) + 0.5 * at_4.0.abs();
+                    assert!(
+                        (4.0 * bias - at_4.0).abs() < allowed,
+                        "{}, {solver:?}: {bias} after {at_4:?}",
+                        problem.name
+                    );
+                }
                 if rounds == 256 {
                     let allowed = Z_LIMIT * error + 2e-3 * problem.integral;
                     assert!(bias.abs() < allowed, "{}, {solver:?}: bias {bias} at R = 256", problem.name);
@@ -155,25 +173,6 @@ fn ridge_and_plain_are_consistent_not_unbiased() {
         }
     }
     assert_eq!(biased, [true; 2], "the documentation calls them biased");
-}
-
-/// Theory, by quadrature: no coefficients give less variance than A^-1 b; 0 is the balance heuristic.
-#[test]
-fn no_alpha_beats_the_solution_of_the_system() {
-    for problem in problems() {
-        let alpha = problem.alpha();
-        let least = problem.variance(&alpha);
-        let balance = problem.variance(&vec![0.0; alpha.len()]);
-        println!("{}: optimal {least:.5} balance {balance:.5}", problem.name);
-        assert!(least <= balance);
-        let mut rng = Rng::seed(9);
-        for scale in [1e-3, 1e-2, 0.1, 1.0] {
-            for _ in 0..20 {
-                let near: Vec<f64> = alpha.iter().map(|a| a + scale * (rng.uniform_f64() - 0.5)).collect();
-                assert!(problem.variance(&near) >= least - 1e-9, "{}", problem.name);
-            }
-        }
-    }
 }
 
 /// With the exact alpha the measured variance is the theory's, and unbiased.
@@ -192,8 +191,8 @@ fn contributions_have_the_variance_of_theory() {
             mean.add(estimate);
             squares.add((estimate - problem.integral).powi(2));
         }
-        assert!(mean.z(problem.integral).abs() < Z_LIMIT);
-        let z = squares.z(problem.variance(&exact));
+        assert!(z(&mean, problem.integral).abs() < Z_LIMIT);
+        let z = z(&squares, problem.variance(&exact));
         assert!(z.abs() < Z_LIMIT, "{}: z = {z:.2}", problem.name);
     }
 }
@@ -221,7 +220,7 @@ fn estimated_weights_reach_most_of_the_gain() {
                 m.mean() / balance,
                 least / balance
             );
-            let slack = Z_LIMIT * m.std_error();
+            let slack = Z_LIMIT * m.standard_error();
             // In-sample alpha fits noise too, by about 1/R of the variance.
             assert!(m.mean() > least * 0.97 - slack, "{}, {solver:?}: below the optimum", problem.name);
             assert!(m.mean() < balance * 1.0 + slack, "{}, {solver:?}: above the balance heuristic", problem.name);
@@ -230,7 +229,7 @@ fn estimated_weights_reach_most_of_the_gain() {
                 assert!(m.mean() < most + slack, "{}, {solver:?}: less than half of the gain", problem.name);
             }
         }
-        assert!(squares[3].z(balance).abs() < Z_LIMIT, "{}: balance differs from theory", problem.name);
+        assert!(z(&squares[3], balance).abs() < Z_LIMIT, "{}: balance differs from theory", problem.name);
     }
 }
 

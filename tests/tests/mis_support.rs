@@ -1,6 +1,8 @@
 //! What the MIS tests share: one-dimensional techniques and integrands with known integrals, and z-tests.
 
 use noisefloor::rng::Rng;
+use noisefloor_tests::oracle::least_squares;
+use noisefloor_tests::statistics::Moments;
 
 /// |z| beyond this has probability 1e-5 under the hypothesis (two-sided normal).
 pub const Z_LIMIT: f64 = 4.417;
@@ -92,11 +94,10 @@ impl Problem {
         (a.collect(), b.collect())
     }
 
-    /// The alpha of least variance. Where several have it, one of them: 1e-10 on the diagonal chooses.
+    /// The alpha of least variance; of several the shortest.
     pub fn alpha(&self) -> Vec<f64> {
-        let (mut a, b) = self.system();
-        a.iter_mut().enumerate().for_each(|(k, row)| row[k] += 1e-10);
-        solve(a, b)
+        let (a, b) = self.system();
+        least_squares(&a, &b)
     }
 
     /// The variance of one round with coefficients alpha, from (2.11) and (2.15):
@@ -171,55 +172,8 @@ pub fn problems() -> Vec<Problem> {
     ]
 }
 
-/// Mean and variance of values as they come.
-#[derive(Default)]
-pub struct Moments {
-    n: f64,
-    mean: f64,
-    squares: f64,
-}
-
-impl Moments {
-    pub fn add(&mut self, value: f64) {
-        self.n += 1.0;
-        let before = value - self.mean;
-        self.mean += before / self.n;
-        self.squares += before * (value - self.mean);
-    }
-
-    pub fn mean(&self) -> f64 {
-        self.mean
-    }
-
-    pub fn std_error(&self) -> f64 {
-        (self.squares / (self.n - 1.0) / self.n).sqrt()
-    }
-
-    /// How many standard errors the mean is above `truth`.
-    pub fn z(&self, truth: f64) -> f64 {
-        let difference = self.mean - truth;
-        // Estimators that are exact up to the rounding of their f32 output have no variance to speak of.
-        if difference.abs() < 1e-6 * truth.abs() { 0.0 } else { difference / self.std_error() }
-    }
-}
-
-/// Gaussian elimination with partial pivoting: the slow, obvious solver.
-pub fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
-    let n = b.len();
-    for i in 0..n {
-        let pivot = (i..n).max_by(|&k, &l| a[k][i].abs().total_cmp(&a[l][i].abs())).unwrap();
-        a.swap(i, pivot);
-        b.swap(i, pivot);
-        for k in i + 1..n {
-            let factor = a[k][i] / a[i][i];
-            let row = a[i].clone();
-            a[k].iter_mut().zip(row).skip(i).for_each(|(x, y)| *x -= factor * y);
-            b[k] -= factor * b[i];
-        }
-    }
-    for i in (0..n).rev() {
-        let known: f64 = (i + 1..n).map(|k| a[i][k] * b[k]).sum();
-        b[i] = (b[i] - known) / a[i][i];
-    }
-    b
+/// How many standard errors the mean is above `truth`. Estimators that are exact up to the rounding of their f32 output
+/// have no variance to speak of.
+pub fn z(moments: &Moments, truth: f64) -> f64 {
+    if (moments.mean() - truth).abs() < 1e-6 * truth.abs() { 0.0 } else { moments.z(truth) }
 }

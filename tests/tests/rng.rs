@@ -1,6 +1,7 @@
 //! PCG32: published values, pinned values, and the uniformity of what is made from it.
 
 use noisefloor::rng::Rng;
+use noisefloor_tests::statistics::uniform_z;
 use rand_core::{Rng as _, SeedableRng};
 
 /// The first outputs of the published demonstration program, `pcg32_srandom(42, 54)`.
@@ -70,14 +71,6 @@ fn next_u64_is_two_outputs_the_lower_first() {
     assert_eq!(once.next_u64(), u64::from(twice.next_u32()) << 32 | low);
 }
 
-/// Pearson's chi-square as a normal deviate (Wilson and Hilferty).
-fn chi_square_z(counts: &[u64]) -> f64 {
-    let expected = counts.iter().sum::<u64>() as f64 / counts.len() as f64;
-    let square: f64 = counts.iter().map(|&c| (c as f64 - expected).powi(2) / expected).sum();
-    let freedom = counts.len() as f64 - 1.0;
-    ((square / freedom).cbrt() - (1.0 - 2.0 / (9.0 * freedom))) / (2.0 / (9.0 * freedom)).sqrt()
-}
-
 /// z beyond this has probability 1e-5.
 const Z_LIMIT: f64 = 4.265;
 
@@ -93,7 +86,7 @@ fn uniforms_are_uniform_and_below_one() {
         double[(y * 256.0) as usize] += 1;
     }
     for counts in [single, double] {
-        assert!(chi_square_z(&counts).abs() < Z_LIMIT, "{}", chi_square_z(&counts));
+        assert!(uniform_z(&counts).abs() < Z_LIMIT, "{}", uniform_z(&counts));
     }
 }
 
@@ -105,7 +98,7 @@ fn below_is_unbiased() {
         for _ in 0..200_000 {
             counts[rng.below(n) as usize] += 1;
         }
-        assert!(n == 1 || chi_square_z(&counts) < Z_LIMIT, "{n}: {}", chi_square_z(&counts));
+        assert!(n == 1 || uniform_z(&counts) < Z_LIMIT, "{n}: {}", uniform_z(&counts));
     }
     // With n = 3 * 2^30 a bare product would give every third value twice as often.
     let n = 3 << 30;
@@ -115,7 +108,7 @@ fn below_is_unbiased() {
         assert!(x < n);
         thirds[(x % 3) as usize] += 1;
     }
-    assert!(chi_square_z(&thirds) < Z_LIMIT, "{thirds:?}");
+    assert!(uniform_z(&thirds) < Z_LIMIT, "{thirds:?}");
     assert_eq!(rng.below(0), 0);
     assert_eq!(rng.below(1), 0);
 }
@@ -134,5 +127,5 @@ fn neighbouring_seeds_are_uncorrelated() {
     // Across seeds: the first numbers of the generators 0..n are as good as one generator's.
     let mut counts = [0; 256];
     (0..1 << 18).for_each(|seed| counts[(Rng::seed(seed).next_u32() >> 24) as usize] += 1);
-    assert!(chi_square_z(&counts).abs() < Z_LIMIT);
+    assert!(uniform_z(&counts).abs() < Z_LIMIT);
 }

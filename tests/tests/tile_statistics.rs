@@ -6,7 +6,7 @@
 
 use noisefloor::tile::{Sampler, Shape, Tile};
 use noisefloor_tests::random::SplitMix64;
-use noisefloor_tests::statistics::{Moments, chi_square};
+use noisefloor_tests::statistics::{Moments, chi_square, wilson_hilferty};
 use noisefloor_tests::tile::{file, noise, ordered};
 use std::collections::HashMap;
 
@@ -93,8 +93,7 @@ fn samples_of_two_domains_meet_at_random() {
                 let statistic =
                     chi_square(&observed, &vec![expected; observed.len()]).0 * f64::from(k - 1) / f64::from(k);
                 let freedom = f64::from((k - 1) * (k - 1));
-                let spread = 2.0 / (9.0 * freedom);
-                let z = ((statistic / freedom).cbrt() - (1.0 - spread)) / spread.sqrt();
+                let z = wilson_hilferty(statistic, freedom);
                 assert!(z.abs() < Z_LIMIT, "{spp} {progressive} {keys} {from}: {z}");
             }
         }

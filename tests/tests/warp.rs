@@ -5,6 +5,7 @@
 use glam::{Vec2, Vec3};
 use noisefloor::rng::Rng;
 use noisefloor::warp::*;
+use noisefloor_tests::statistics::uniform_z;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -82,12 +83,9 @@ fn squared_length(d: Vec3) -> f64 {
     f64::from(d.x).powi(2) + f64::from(d.y).powi(2) + f64::from(d.z).powi(2)
 }
 
-/// Pearson's chi-square as a normal deviate (Wilson and Hilferty); beyond 4.265 has probability 1e-5.
+/// Beyond 4.265 has probability 1e-5.
 fn assert_uniform(name: &str, counts: &[u64]) {
-    let expected = counts.iter().sum::<u64>() as f64 / counts.len() as f64;
-    let square: f64 = counts.iter().map(|&c| (c as f64 - expected).powi(2) / expected).sum();
-    let freedom = counts.len() as f64 - 1.0;
-    let z = ((square / freedom).cbrt() - (1.0 - 2.0 / (9.0 * freedom))) / (2.0 / (9.0 * freedom)).sqrt();
+    let z = uniform_z(counts);
     assert!(z < 4.265, "{name}: chi-square z = {z:.2}");
 }
 

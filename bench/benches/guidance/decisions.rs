@@ -5,16 +5,13 @@ use crate::samplers::Source;
 use crate::study::{CHANNELS, Cell, Kind};
 use anyhow::{Result, anyhow};
 use noisefloor::recommend::{Method as Recommended, Recommendation, Sampling, recommend};
-use noisefloor_tests::statistics::Moments;
+use noisefloor_tests::statistics::{Moments, student};
 use std::fmt::Write;
 
 /// Nanoseconds that a sample is taken to cost for each of its dims.
 const COST: f64 = 1000.0;
 /// How much worse than the plain mean of the same samples an estimator may be for any integrand.
 const TOLERANCE: f64 = 1.05;
-/// Student's t of 97.5 % for the 7 degrees of freedom of 8 kinds of integrands; more kinds are of `--full`, and nearer
-/// to 1.96.
-const STUDENT: f64 = 2.365;
 
 /// One decision: what is recommended, what was best, and how much worse the first is than the second.
 pub(crate) struct Decision {
@@ -57,11 +54,12 @@ fn logarithms(cell: &Cell) -> Vec<f64> {
     cell.errors.chunks(CHANNELS).map(kind).collect()
 }
 
-/// `a`'s error over `b`'s, integrand by integrand, times `times`.
+/// `a`'s error over `b`'s, integrand by integrand, times `times`. Nothing accounts for `b` being the least of several
+/// on the same data.
 fn excess(a: &Cell, b: &Cell, times: f64) -> [f64; 3] {
     let mut moments = Moments::default();
     logarithms(a).iter().zip(logarithms(b)).for_each(|(a, b)| moments.add(a - b));
-    let (middle, spread) = (times.ln() + moments.mean(), STUDENT * moments.standard_error());
+    let (middle, spread) = (times.ln() + moments.mean(), student(moments.count() - 1.0) * moments.standard_error());
     [middle.exp(), (middle - spread).exp(), (middle + spread).exp()]
 }
 

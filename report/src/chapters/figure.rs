@@ -58,7 +58,7 @@ pub(crate) struct Figure {
     pub(crate) text: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) value: Option<f64>,
-    /// Ends of the 95 % confidence interval.
+    /// Ends of the confidence interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) interval: Option<[f64; 2]>,
 }

@@ -1,7 +1,7 @@
 //! The chapter of Mitsuba 3, which integrations/mitsuba/measure.py measures.
 
 use super::prelude::*;
-use super::statistics::moments;
+use super::statistics::{moments, student};
 use crate::measure::running;
 use itertools::iproduct;
 use std::path::PathBuf;
@@ -80,10 +80,13 @@ fn gradients(measured: &Table) -> Result<Table> {
         let reference_error = reference_spread / (reference.len() as f64).sqrt();
         let error = (spread * spread / found.len() as f64 + reference_error * reference_error).sqrt();
         let percent = 100.0 / exact.abs();
-        let bias = Estimate::about((mean - exact) * percent, 1.96 * error * percent, found.len());
-        // Of the ratio of two deviations of normal numbers.
+        let freedom = found.len() as f64 - 1.0;
+        let quantile = student(0.025, freedom);
+        let bias = Estimate::about((mean - exact) * percent, quantile * error * percent, found.len());
+        // The logarithm of the ratio of two deviations of normal numbers has a variance of about 1 / freedom.
         let ratio = spread / moments(&of(parameter, spp, PLAIN)?).1;
-        let ratio = Estimate::about(ratio, 1.96 * ratio / (found.len() as f64 - 1.0).sqrt(), found.len());
+        let above = ratio * (quantile / freedom.sqrt()).exp_m1();
+        let ratio = Estimate::of_logarithm(ratio, above, found.len());
         let [near, far] = [f64::min, f64::max].map(|of| of(bias.low.abs(), bias.high.abs()));
         let least = if bias.low * bias.high < 0.0 { 0.0 } else { near };
         let size = Estimate { value: bias.value.abs(), low: least, high: far, ..bias };
@@ -91,4 +94,33 @@ fn gradients(measured: &Table) -> Result<Table> {
         all.push([parameter, spp, sampler].into_iter().chain(ends.iter().flatten().map(String::as_str)));
     }
     Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three frames each: Student's quantile of two degrees of freedom, 4.303.
+    #[test]
+    fn intervals_of_gradients_are_students() -> Result<()> {
+        let mut measured = Table::new("gradients", "parameter | spp | sampler | gradient");
+        for (sampler, spp, frames) in
+            [("reference", REFERENCE, [10, 10, 10]), (PLAIN, "4", [8, 10, 12]), (DEFAULT, "4", [10, 11, 12])]
+        {
+            frames.iter().for_each(|frame| measured.push(["red", spp, sampler, &frame.to_string()]));
+        }
+        let own = gradients(&measured)?.of(&[("sampler", DEFAULT)]);
+        for (column, expected) in [
+            ("spread", 0.5),
+            ("spread_low", 0.5 * (-4.30265 / 2_f64.sqrt()).exp()),
+            ("spread_high", 0.5 * (4.30265 / 2_f64.sqrt()).exp()),
+            ("bias", 10.0),
+            ("bias_low", 10.0 - 43.0265 / 3_f64.sqrt()),
+            ("size_high", 10.0 + 43.0265 / 3_f64.sqrt()),
+        ] {
+            let found = own.numbers(column)?;
+            assert!(found.len() == 1 && (found[0] - expected).abs() < 1e-4, "{column}: {found:?} for {expected}");
+        }
+        Ok(())
+    }
 }
