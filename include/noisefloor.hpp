@@ -61,7 +61,8 @@ private:
 };
 
 namespace detail {
-// If a C is a container, and no view, that ends with the expression: what keeps a pointer to its elements refuses it.
+// If a C is a container that ends with the expression, and no view: what keeps a pointer to its elements refuses it.
+// Arrays of constants pass: they look like views.
 template <class C>
 using if_ends = std::enable_if_t<!std::is_reference_v<C> &&
                                  !std::is_same_v<decltype(std::declval<std::remove_const_t<C> &>().data()),

@@ -202,10 +202,11 @@ pub fn density(bytes: &[u8], path: &Path, points: usize, invert: bool) -> Result
 /// As [`text`]; a value that is no finite number; rows of different lengths; no points; more than 8 coordinates.
 pub fn points(path: &Path) -> Result<Table> {
     let text = &text(path, "a point set")?;
-    let first = text.lines().map(uncommented).find(|line| !line.is_empty()).unwrap_or_default();
-    let table = if first.starts_with('{') {
+    // The first may be a header, of names with a `#` in them.
+    let first: Vec<&str> = text.lines().map(uncommented).filter(|line| !line.is_empty()).take(2).collect();
+    let table = if first.first().is_some_and(|line| line.starts_with('{')) {
         json(text)
-    } else if first.contains(',') {
+    } else if first.iter().any(|line| line.contains(',')) {
         csv(text)
     } else {
         lines(text)

@@ -52,6 +52,7 @@ fn foreign_text_is_read() {
         "x y\n.25 .5\n.75 1",
         "0.25 0.5 # a, b\n0.75 1\n",
         "a, b\n.25, .5\n.75, 1\n",
+        "a #1,a #2\n.25,.5\n.75,1\n",
     ];
     for text in texts {
         assert_eq!(read(text).unwrap().points, expected, "{text}");

@@ -162,6 +162,7 @@ fn points_are_in_place_before_their_report() {
     let mut child = place.start("points -n 400000 --iterations 1 --out p.txt");
     while !place.path("p.txt").exists() {
         assert!(child.try_wait().unwrap().is_none());
+        std::thread::sleep(Duration::from_millis(5));
     }
     std::thread::sleep(Duration::from_millis(100));
     child.kill().unwrap();

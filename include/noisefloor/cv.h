@@ -117,7 +117,7 @@ typedef struct nf_estimate {
 } nf_estimate;
 
 // Bytes of workspace for n samples of each integral, or fewer; never less for more. 0 where nf_check() refuses,
-// options exclude each other, the solver or a library for float (2^25) takes fewer samples, or no memory is enough.
+// options exclude each other, the solver or a library for float alone takes fewer samples, or no memory is enough.
 size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
 // Estimates `integrals` integrals from `samples->n` samples of each, apart from each other: out[integrals]. Nothing of
@@ -179,9 +179,9 @@ size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image 
 //
 // NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
 // they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and a `ridge` are exactly
-// unbiased for independent samples. Groups of less than 3 pixels, and one more for each axis of the window, stay at
-// their mean; with several samples NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. One sample in each pixel cannot tell a
-// texture: say it by `surfaces` or `factors`. With one, or `stratified`, std_error is the spread about a linear trend.
+// unbiased for independent samples. Groups of fewer pixels than 3 plus the window's axes stay at their mean; with
+// several samples NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. One sample in each pixel cannot tell a texture: say it
+// by `surfaces` or `factors`. With one, or `stratified`, std_error is the estimates' spread about a linear trend.
 //
 // With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
 // to what is left of it, with order 0 between the mean and what is known; NF_CV_K_FOLD is unsupported.
@@ -205,8 +205,8 @@ typedef struct nf_cv_descent {
 
 // nf_cv_estimate() of one integral by NF_CV_GRADIENT_DESCENT, which `estimator` must be, from a start: `coefficients`
 // are `channels` rows (1 for a luminance ratio) of nf_cv_terms() - 1 floats in the values' unit, and the solution
-// afterwards. The solution of a previous frame is a good start (4.2.6). A channel whose descent ends no nearer to the
-// values than their mean is that mean; its coefficients are then 0, unless they came nearer than the start.
+// afterwards. The solution of a previous frame is a good start (4.2.6). A channel whose descent ends farther from
+// the values than their mean is that mean; its coefficients are then 0, unless they came nearer than the start.
 //
 // Other errors as for nf_cv_estimate(); NF_ERR_RANGE also for the descent, NF_ERR_NOT_FINITE for the start,
 // NF_ERR_UNSUPPORTED for another estimator and `controls`.

@@ -241,8 +241,8 @@ class ImportanceBatchSampler(Sampler):
         Args:
             logits: the model's outputs, (batch_size,) or (batch_size, ...), any loss's.
             reduction: "mean" or "sum": how the weighted losses of the batch were added up.
-            scale: what the loss was multiplied by besides, above 0, by a GradScaler say. Derivatives that are infinite,
-                for which that leaves a step out, are refused.
+            scale: what the loss was multiplied by besides, 1e-30 to 3.4e38, by a GradScaler say. Derivatives that are
+                infinite, for which that leaves a step out, are refused.
         """
         scale = _arrays.number("scale", scale, 1e-30, 3.4e38)
         if logits.grad is None:

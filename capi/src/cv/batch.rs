@@ -15,7 +15,7 @@ pub(super) type Best = f64;
 pub(super) type Best = f32;
 
 /// Bytes of workspace for n samples of each integral, or fewer; never less for more. 0 where nf_check() refuses,
-/// options exclude each other, the solver or a library for float (2^25) takes fewer samples, or no memory is enough.
+/// options exclude each other, the solver or a library for float alone takes fewer samples, or no memory is enough.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_workspace_size(config: *const nf_cv_config, n: usize) -> usize {
     let len = || {

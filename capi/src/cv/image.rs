@@ -97,9 +97,9 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
 ///
 /// NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
 /// they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and a `ridge` are exactly
-/// unbiased for independent samples. Groups of less than 3 pixels, and one more for each axis of the window, stay at
-/// their mean; with several samples NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. One sample in each pixel cannot tell a
-/// texture: say it by `surfaces` or `factors`. With one, or `stratified`, std_error is the spread about a linear trend.
+/// unbiased for independent samples. Groups of fewer pixels than 3 plus the window's axes stay at their mean; with
+/// several samples NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. One sample in each pixel cannot tell a texture: say it
+/// by `surfaces` or `factors`. With one, or `stratified`, std_error is the estimates' spread about a linear trend.
 ///
 /// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
 /// to what is left of it, with order 0 between the mean and what is known; NF_CV_K_FOLD is unsupported.

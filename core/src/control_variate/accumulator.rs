@@ -147,7 +147,7 @@ impl<R: Real> Accumulator<R> {
     }
 
     /// Sums of a narrow type stop growing when they are too large for one more sample to show.
-    fn check_capacity(&self, more: u64) -> Result<(), Error> {
+    pub(super) fn check_capacity(&self, more: u64) -> Result<(), Error> {
         let total = self.samples.saturating_add(more);
         if R::NARROW && total > NARROW_CAPACITY { Err(Error::Range) } else { Ok(()) }
     }
@@ -173,7 +173,8 @@ impl<R: Real> Accumulator<R> {
         let reader = Reader::new(&self.config, samples)?;
         reader.check()?;
         self.check_capacity(reader.len() as u64)?;
-        let basis = self.basis();
+        let mut basis = Basis::empty();
+        basis.set(self.config.basis, self.shape);
         let terms = self.layout.terms();
         let mut p = [[R::ZERO]; MAX_TERMS];
         p[0] = [R::ONE];

@@ -25,7 +25,8 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
     design::check_count::<R>(n)?;
     match plan.method {
         Method::Incremental | Method::SquareRoot => {
-            Accumulator::<R>::new(config).map(|stream| stream.len() + stream.needed())
+            let stream = Accumulator::<R>::new(config)?;
+            stream.check_capacity(n as u64).map(|()| stream.len() + stream.needed())
         }
         _ => size(config, &plan, n).ok_or(Error::Memory),
     }

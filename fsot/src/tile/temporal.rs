@@ -24,10 +24,10 @@ pub enum TemporalKernel {
     /// The eye's response, sustained plus transient, at [`FRAME_RATE`]: R. Mantiuk et al., "FovVideoVDP: A Visible
     /// Difference Predictor for Wide Field-of-View Video", 2021.
     ///
-    /// Sustained: `S(t) = exp(-(ln(t + 1e-4) - ln 0.06)^2 / (2 * 0.5^2))`, t in seconds, scaled to the sum 1 over the
-    /// frames. Transient: `0.062170507756932 dS/dt`, here the analytic derivative. The sum has a negative tail, which a
-    /// class function cannot have (it selects samples, it does not weigh them): its absolute value is used, so that the
-    /// frames of the tail are stratified as well.
+    /// Sustained: `S(t) = exp(-(ln(t + 1e-4) - ln 0.06)^2 / (2 * 0.5^2))`, t in seconds, scaled to the sum 1 over a
+    /// second's frames. Transient: `0.062170507756932 dS/dt`, here the analytic derivative. The sum has a negative
+    /// tail, which a class function cannot have (it selects samples, it does not weigh them): its absolute value is
+    /// used, so that the frames of the tail are stratified as well.
     Mantiuk,
     /// The weights of the frame itself, the one before it, and so on: 0 or positive.
     Tabulated(Vec<f32>),

@@ -21,8 +21,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     ///
     /// Weights make the same estimate as those of [`Table::draw`], gradients times weights averaged over the batch,
     /// without bias: with c_k the probability of the k-th of B draws, `weight = (1 / c_k + B - k) / N` (D. Raj, "Some
-    /// Estimators in Sampling with Varying Probabilities without Replacement", 1956),
-    /// which is at most 1 / d + (B - 1) / N.
+    /// Estimators in Sampling with Varying Probabilities without Replacement", 1956). No weight is above
+    /// 1 / d + (B - 1) / N.
     ///
     /// Items drawn are taken out of the table while the others are drawn, and put back with the same bits: a draw takes
     /// the time of ten updates or so, and exclusive access. Where a few items have nearly all of the sum, the table is

@@ -48,6 +48,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
 /// Errors: [`Error::Foreign`] for other bytes, [`Error::Version`] for a newer format, [`Error::Length`],
 /// [`Error::Corrupt`] for a version or a number of items that no table has.
 pub fn saved_items(bytes: &[u8]) -> Result<u32, Error> {
+    // Not by `starts_with`, which may call bcmp: a freestanding target need not have that.
     if bytes.iter().zip(&MAGIC).any(|(byte, magic)| byte != magic) {
         return Err(Error::Foreign);
     }

@@ -167,8 +167,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     }
     args.plot.iter().try_for_each(|path| names::picture(path, &["png", "svg"]))?;
     output::check(args.plot.as_deref(), args.files.iter().map(PathBuf::as_path))?;
-    let contents: Vec<Content> = args.files.iter().map(|path| args.tile.read(path)).collect::<Result<_>>()?;
     args.tile.check(&args.files)?;
+    let contents: Vec<Content> = args.files.iter().map(|path| args.tile.read(path)).collect::<Result<_>>()?;
     let tiles = contents.iter().filter(|content| matches!(content, Content::Tile(_))).count();
     if !args.ema.is_empty() && tiles == 0 {
         return Err(idle("--ema", "tiles"));

@@ -1,5 +1,5 @@
-//! The names of outputs: none ends as a picture or a tile does that is none. Pipes and devices have the names that
-//! they have.
+//! The names of outputs: what is no picture or tile does not end like one. Pipes and devices have the names that they
+//! have.
 
 use fsot::error::{Error, Result};
 use fsot::{output, read};
@@ -84,11 +84,11 @@ pub(crate) fn export(path: &Path, written: &str) -> Result<()> {
     if !output::is_stream(path) && read::ending(path) == "nft" {
         return Err(Error::Input(format!("{} is the name of a tile: give the {written} file another", path.display())));
     }
-    match other(path, &[written]) {
-        Some(ending) if !KNOWN.contains(&written) => Err(Error::Input(format!(
-            "{} would be the {written} file, not {ending}: give it another ending",
-            path.display()
-        ))),
-        _ => picture(path, &[written]),
+    if KNOWN.contains(&written) {
+        return picture(path, &[written]);
     }
+    other(path, &[]).map_or(Ok(()), |ending| {
+        let name = path.display();
+        Err(Error::Input(format!("{name} would be the {written} file, not {ending}: give it another ending")))
+    })
 }

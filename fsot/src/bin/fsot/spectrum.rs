@@ -59,17 +59,14 @@ fn average(args: &Args) -> Result<(Spectrum, Subject)> {
     if spectra.iter().any(|s| s.1 != subject) {
         return Err(Error::Input("point sets and tiles have different spectra: give files of one kind".into()));
     }
-    match subject {
-        Subject::Points if args.integrands.is_some() => return Err(idle("--integrands", "tiles")),
-        Subject::Tile if args.axes.is_some() => return Err(idle("--axes", "point sets")),
-        _ => {}
-    }
     let spectra: Vec<Spectrum> = spectra.into_iter().map(|s| s.0).collect();
     Ok((Spectrum::average(&spectra)?, subject))
 }
 
 fn one(args: &Args, path: &Path) -> Result<(Spectrum, Subject)> {
     match args.tile.read(path)? {
+        Content::Points(_) if args.integrands.is_some() => Err(idle("--integrands", "tiles")),
+        Content::Tile(_) if args.axes.is_some() => Err(idle("--axes", "point sets")),
         Content::Points(table) => {
             let dims = table.points.dims();
             let [first, second] = args.axes.as_deref().and_then(<[u8]>::first_chunk).copied().unwrap_or([1, 2]);

@@ -45,7 +45,8 @@ pub(crate) struct Args {
     /// An animation of this many frames
     #[arg(long, value_name = "FRAMES", requires = "temporal_kernel")]
     temporal: Option<usize>,
-    /// What an animation is filtered by: ema:ALPHA (an exponential moving average) or mantiuk (the eye)
+    /// What an animation is filtered by: ema:ALPHA (an exponential moving average) or mantiuk (the eye; 8
+    /// frames or more)
     #[arg(long, value_name = "KERNEL", requires = "temporal")]
     temporal_kernel: Option<TemporalKernel>,
     /// The first 1, 2, 4, ... samples of all pixels are tiles too
