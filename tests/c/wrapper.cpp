@@ -89,7 +89,7 @@ static void configurations()
                                   .with(nf::solver::normal_equations)
                                   .with_stratified_samples()
                                   .with_slices(4)
-                                  .with_edges(2)
+                                  .with_edges(1)
                                   .with_controls(1)
                                   .with_stride(7)
                                   .with_single_precision()
@@ -98,7 +98,7 @@ static void configurations()
                                   .with_ridge(0.5f);
     CHECK(config.dims == 3 && config.order == 1 && config.channels == 2 && config.estimator == NF_CV_K_FOLD);
     CHECK(config.basis == NF_BASIS_SINE && config.solver == NF_SOLVER_NORMAL_EQUATIONS);
-    CHECK(config.stratified == 1 && config.slices == 4 && config.edges == 2 && config.controls == 1);
+    CHECK(config.stratified == 1 && config.slices == 4 && config.edges == 1 && config.controls == 1);
     CHECK(config.stride == 7 && config.precision == NF_PRECISION_F32);
     CHECK(config.nonfinite == NF_NONFINITE_SKIP && config.folds == 5 && config.ridge == 0.5f);
     CHECK(config.with_automatic_ridge().ridge == NF_RIDGE_AUTO);

@@ -182,7 +182,10 @@ impl Call<'_> {
                 filled = groups.push(self, index, filled, places.len());
                 continue;
             }
-            left.extend(places.iter().copied().zip(each));
+            for pixel in places.iter().copied().zip(each) {
+                // No more than there are places; `extend` would panic of more.
+                let _ = left.push(pixel);
+            }
             while let Some(&(_, surface)) = left.first() {
                 let mut len = 0;
                 left.retain(|&(place, other)| {
