@@ -665,7 +665,7 @@ fn too_many_samples() {
     assert!(control_variate::workspace_len::<f32>(&config, most).is_ok());
     assert_eq!(control_variate::workspace_len::<f32>(&config, most + 1), Err(Error::Range));
     assert!(control_variate::workspace_len::<f64>(&config, most + 1).is_ok());
-    let stream = Config { estimator: Estimator::Incremental, ..config };
+    let stream = Config { order: 1, estimator: Estimator::Incremental, ..config };
     assert!(control_variate::workspace_len::<f32>(&stream, 1 << 22).is_ok());
     assert_eq!(control_variate::workspace_len::<f32>(&stream, (1 << 22) + 1), Err(Error::Range));
     let zeros = vec![0.0; most + 1];
