@@ -42,7 +42,9 @@ class Program:
 
     def refuses(self, word, *arguments):
         """Fails unless the program exits as programs do after an error, with a message that contains `word`."""
-        done = self.start(*arguments)
+        self.refused(self.start(*arguments), word, arguments)
+
+    def refused(self, done, word, arguments):
         last = (done.stderr.splitlines() or [""])[-1]
         refused = done.returncode == 1 and last.startswith(f"{self.name}: ") and word in last
         require(refused, f"{self.name} {arguments}: exit status {done.returncode}, and it says `{done.stderr.strip()}`")
@@ -93,10 +95,7 @@ class PathTracer(Program):
 
     def refuses_each(self, *wrong):
         for options in wrong:
-            done = self.draw(*options.split())
-            last = (done.stderr.splitlines() or [""])[-1]
-            refused = done.returncode == 1 and last.startswith(f"{self.name}: ")
-            require(refused, f"{self.name} {options}: exit status {done.returncode}, and it says `{last}`")
+            self.refused(self.draw(*options.split()), "", options)
 
     def picture(self, name):
         return self.folder / f"picture.{name}.pfm"

@@ -7,7 +7,7 @@ use super::fit::{Penalty, descent, givens, normal};
 use super::folds;
 use super::incremental;
 use super::per_channel::PerChannel;
-use super::plan::{self, Method};
+use super::plan::{self, Method, NARROW_CAPACITY};
 use super::result::{Outcome, Summary};
 use super::ridge;
 use super::samples::{Reader, Samples, Subset};
@@ -19,9 +19,6 @@ use crate::lanes::Lanes;
 use crate::real::Real;
 use crate::rows::{first_mut, from, from_mut, halves_mut};
 use core::num::NonZeroUsize;
-
-/// The most samples of an accumulator in `f32`.
-const NARROW_CAPACITY: u64 = 1 << 22;
 
 /// A streaming estimate of fixed size: everything but the sums themselves, a buffer of [`Accumulator::len`] numbers
 /// that every method takes as the last call left it. A shorter one is [`Error::Memory`].
@@ -147,9 +144,9 @@ impl<R: Real> Accumulator<R> {
     }
 
     /// Sums of a narrow type stop growing when they are too large for one more sample to show.
-    pub(super) fn check_capacity(&self, more: u64) -> Result<(), Error> {
+    fn check_capacity(&self, more: u64) -> Result<(), Error> {
         let total = self.samples.saturating_add(more);
-        if R::NARROW && total > NARROW_CAPACITY { Err(Error::Range) } else { Ok(()) }
+        if R::NARROW && total > NARROW_CAPACITY as u64 { Err(Error::Range) } else { Ok(()) }
     }
 
     /// Forgets all samples.

@@ -21,15 +21,11 @@ use crate::real::Real;
 /// samples than [`estimate`] takes, [`Error::Memory`] if no memory could be large enough.
 #[inline]
 pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error> {
-    let plan = Plan::new(config, config.checked_shape()?.columns(), n)?;
-    design::check_count::<R>(n)?;
-    match plan.method {
-        Method::Incremental | Method::SquareRoot => {
-            let stream = Accumulator::<R>::new(config)?;
-            stream.check_capacity(n as u64).map(|()| stream.len() + stream.needed())
-        }
-        _ => size(config, &plan, n).ok_or(Error::Memory),
+    let plan = Plan::new::<R>(config, config.checked_shape()?.columns(), n)?;
+    if plan.method.streams() {
+        return Accumulator::<R>::new(config).map(|stream| stream.len() + stream.needed());
     }
+    size(config, &plan, n).ok_or(Error::Memory)
 }
 
 /// The same of what does not stream.
@@ -84,14 +80,13 @@ pub fn estimate_inlined<R: Real>(
     workspace: &mut [R],
 ) -> Result<Estimate, Error> {
     let shape = config.checked_shape()?;
-    if matches!(Method::of(config, config.controls + shape.columns()), Method::Incremental | Method::SquareRoot) {
+    if Method::of(config, config.controls + shape.columns()).streams() {
         return streamed(config, samples, workspace);
     }
     let mut basis = Basis::empty();
     basis.set(config.basis, shape);
     let reader = Reader::new(config, samples)?;
-    let plan = Plan::new(config, shape.columns(), reader.len())?;
-    design::check_count::<R>(reader.len())?;
+    let plan = Plan::new::<R>(config, shape.columns(), reader.len())?;
     reader.check()?;
     let mut arena = Arena::new(workspace, size(config, &plan, reader.len()))?;
     let design = Design::load(&reader, &basis, plan.columns, Subset::All, true, &mut arena).ok_or(Error::NoSamples)?;

@@ -5,7 +5,6 @@ use super::per_channel::PerChannel;
 use super::samples::{Reader, Subset};
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS};
-use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::matrix::{Panel, Triangle, first_mut, from};
 use crate::real::{Real, rounding};
@@ -61,16 +60,6 @@ impl<R: Real> Units<R> {
     pub(crate) fn relative(&self, stored: R, other: &Self) -> R {
         self.converted(other.offset + stored, other) - self.offset
     }
-}
-
-/// The most samples in a narrow type: with four times as many, a lane's sums are too large for one more to show.
-const NARROW_CAPACITY: usize = LANES << 22;
-
-/// # Errors
-/// [`Error::Range`] for more samples than sums, or counts of 32 bits, hold.
-pub(crate) fn check_count<R: Real>(n: usize) -> Result<(), Error> {
-    let is_counted = u32::try_from(n).is_ok();
-    if is_counted && !(R::NARROW && n > NARROW_CAPACITY) { Ok(()) } else { Err(Error::Range) }
 }
 
 /// Numbers that a design of `n` samples takes from its arena.

@@ -51,7 +51,7 @@ pub(crate) fn estimate<R: Real>(
         coefficients.fill(R::ZERO);
         let mut inflation = PerChannel::all(R::ONE);
         if let Some(train) = train.filter(|train| train.n > 1) {
-            let plan = Plan::new(config, basis.columns(), train.n)?;
+            let plan = Plan::new::<R>(config, basis.columns(), train.n)?;
             let blend = fitter::fit(&train, config, basis, &plan, Some(coefficients), &mut arena);
             inflation = blend.inflation();
             // Everything meets in the units of all samples, which are the largest.

@@ -13,7 +13,11 @@
 
 use super::config::{Config, Estimator, Ridge, Solver};
 use crate::error::Error;
+use crate::lanes::LANES;
+use crate::real::Real;
 
+/// The most samples whose sum, in a narrow type, one more surely shows in.
+pub(crate) const NARROW_CAPACITY: usize = 1 << 22;
 /// The most samples that [`Solver::Dual`] takes: its system is as large as they are.
 const MAX_DUAL: usize = 4096;
 
@@ -39,6 +43,11 @@ pub(crate) enum Method {
 }
 
 impl Method {
+    /// Whether samples in arrays go into sums one by one, as those of a stream do.
+    pub(crate) fn streams(self) -> bool {
+        matches!(self, Self::Incremental | Self::SquareRoot)
+    }
+
     /// Of a fit of so many functions.
     pub(crate) fn of(config: &Config, columns: usize) -> Self {
         // What corrects some samples by fits to others undoes what is even about all of them, and errors on samples
@@ -91,7 +100,10 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    pub(crate) fn new(config: &Config, functions: usize, n: usize) -> Result<Self, Error> {
+    /// # Errors
+    /// [`Error::Unsupported`] for options that exclude each other, [`Error::Range`] for more samples than the solver
+    /// takes, or sums, eight side by side but where they stream, or counts of 32 bits hold.
+    pub(crate) fn new<R: Real>(config: &Config, functions: usize, n: usize) -> Result<Self, Error> {
         let columns = config.controls + functions;
         let is_factored = config.estimator == Estimator::LeastSquares && config.ridge != Ridge::Auto;
         let method = Method::of(config, columns);
@@ -101,6 +113,10 @@ impl Plan {
             Solver::Dual if n > MAX_DUAL && solves => return Err(Error::Range),
             Solver::SquareRoot if !is_factored => return Err(Error::Unsupported),
             _ => {}
+        }
+        let most = if method.streams() { NARROW_CAPACITY } else { LANES * NARROW_CAPACITY };
+        if u32::try_from(n).is_err() || (R::NARROW && n > most) {
+            return Err(Error::Range);
         }
         let dual = n <= most_dual(config, columns);
         Ok(Self { method, columns: if method == Method::Plain { 0 } else { columns }, dual })

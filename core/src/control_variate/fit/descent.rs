@@ -88,8 +88,7 @@ pub fn estimate_from<R: Real>(
     let mut basis = Basis::empty();
     basis.set(config.basis, config.checked_shape()?);
     let reader = Reader::new(config, samples)?;
-    Plan::new(config, basis.columns(), reader.len())?;
-    design::check_count::<R>(reader.len())?;
+    Plan::new::<R>(config, basis.columns(), reader.len())?;
     let columns = config.controls + basis.columns();
     if coefficients.len() != columns * reader.channels() {
         return Err(Error::Range);
