@@ -84,7 +84,8 @@ pub enum Ridge {
     /// The strength with the smallest leave-one-out error of a few, which biases leave-one-out; the default where there
     /// are no such errors.
     Auto,
-    /// Penalty per sample on a first-degree coefficient; positive and finite, raised to 1e-12 or in `f32` to 1e-5.
+    /// Penalty per sample on a first-degree coefficient, times the number of first-degree functions; positive and
+    /// finite, raised to 1e-12 or in `f32` to 1e-5.
     Fixed(f32),
 }
 

@@ -45,9 +45,9 @@ const DOUBT: f64 = 6.0;
 /// Where the centre of the samples lies as a fit to them measures distance, from the cube's.
 ///
 /// For q = n sum_i (m'A^-1 p_i)^2, with m the columns' means and p_i the centred columns, and k =
-/// `freedom` effective coefficients, Hotelling's F = (q / k) (n - 1 - k) tells: it is about 1 for independent samples.
-/// If all lie in one part of the cube, errors on held-out samples are small and yet the fit's integral is an
-/// extrapolation: F is large. If they were placed to be even it is small.
+/// `freedom` effective coefficients, F = (q / k) (n - 1 - k) tells: Hotelling's, but for its n - k, and about 1 for
+/// independent samples. If all lie in one part of the cube, errors on held-out samples are small and yet the fit's
+/// integral is an extrapolation: F is large. If they were placed to be even it is small.
 #[derive(Clone, Copy)]
 pub(crate) struct Centre<R> {
     f: R,
