@@ -56,9 +56,7 @@ pub unsafe extern "C" fn nf_cv_gradient_descent(
         };
         let core = with(core_config(config)?, descent)?;
         is_narrow(config)?;
-        if core.estimator != Estimator::GradientDescent || core.controls > 0 {
-            return Err(NF_ERR_UNSUPPORTED);
-        }
+        ensure(core.estimator == Estimator::GradientDescent && core.controls == 0, NF_ERR_UNSUPPORTED)?;
         let columns = core.terms()? - 1;
         // SAFETY: the caller's arrays and workspace, of the lengths the header states.
         let (samples, coefficients, workspace) = unsafe {

@@ -14,7 +14,7 @@ use super::samples::{Reader, Samples, Subset};
 use super::sums::{Change, Form, Layout};
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::lanes::Lanes;
 use crate::real::Real;
 use crate::rows::{first_mut, from, from_mut, halves_mut};
@@ -146,7 +146,7 @@ impl<R: Real> Accumulator<R> {
     /// Sums of a narrow type stop growing when they are too large for one more sample to show.
     fn check_capacity(&self, more: u64) -> Result<(), Error> {
         let total = self.samples.saturating_add(more);
-        if R::NARROW && total > NARROW_CAPACITY as u64 { Err(Error::Range) } else { Ok(()) }
+        ensure(!R::NARROW || total <= NARROW_CAPACITY as u64, Error::Range)
     }
 
     /// Forgets all samples.
@@ -221,9 +221,7 @@ impl<R: Real> Accumulator<R> {
     /// # Errors
     /// [`Error::Mismatch`] if the configurations differ; in `f32` [`Error::Range`] for more than 2^22 samples together.
     pub fn merge(&mut self, sums: &mut [R], other: &Self, other_sums: &[R]) -> Result<(), Error> {
-        if self.config != other.config {
-            return Err(Error::Mismatch);
-        }
+        ensure(self.config == other.config, Error::Mismatch)?;
         let (sums, other_sums) = (self.used_mut(sums)?, other.used(other_sums)?);
         if other.samples == 0 {
             return Ok(());
@@ -268,9 +266,7 @@ impl<R: Real> Accumulator<R> {
     /// [`Accumulator::workspace_len`] says.
     pub fn estimate(&self, sums: &[R], workspace: &mut [R]) -> Result<Estimate, Error> {
         let sums = self.used(sums)?;
-        if self.samples == 0 {
-            return Err(Error::NoSamples);
-        }
+        ensure(self.samples > 0, Error::NoSamples)?;
         let (summary, arena) = (self.summary(sums), &mut Arena::new(workspace, Some(self.needed()))?);
         // From an estimate in the sums' units.
         let correcting = |of: Outcome<R>| Outcome { correction: of.correction - summary.mean, ..of };

@@ -8,7 +8,7 @@ use super::samples::Sample;
 use super::sums::{Change, Form, Sums};
 use crate::arena::Arena;
 use crate::basis::{Basis, Family};
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::matrix::{Panel, Triangle, first_mut, from_mut};
 use core::iter;
 
@@ -48,9 +48,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     /// [`Error::Range`] if `DIMS`, `order` and `TERMS` do not belong together or `CHANNELS` is not 1 to 4.
     pub fn new(family: Family, order: usize) -> Result<Self, Error> {
         let basis = Basis::new(family, DIMS, order, 0)?;
-        if basis.columns() + 1 != TERMS || CHANNELS == 0 || CHANNELS > Config::MAX_CHANNELS {
-            return Err(Error::Range);
-        }
+        ensure(basis.columns() + 1 == TERMS && (1..=Config::MAX_CHANNELS).contains(&CHANNELS), Error::Range)?;
         Ok(Self {
             basis,
             samples: 0,
@@ -94,12 +92,8 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     /// [`Error::NoSamples`], or [`Error::Range`] for a strength that is not positive and finite.
     #[inline]
     pub fn estimate(&self, strength: f32) -> Result<Estimate, Error> {
-        if self.samples == 0 {
-            return Err(Error::NoSamples);
-        }
-        if !(strength > 0.0 && strength.is_finite()) {
-            return Err(Error::Range);
-        }
+        ensure(self.samples > 0, Error::NoSamples)?;
+        ensure(strength > 0.0 && strength.is_finite(), Error::Range)?;
         let mut units = [Units::default(); Config::MAX_CHANNELS];
         for (unit, offset) in units.iter_mut().zip(self.offset) {
             unit.offset = f64::from(offset);
@@ -121,9 +115,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     /// # Errors
     /// [`Error::Mismatch`] if the bases differ.
     pub fn merge(&mut self, other: &Self) -> Result<(), Error> {
-        if !self.basis.is_same(&other.basis) {
-            return Err(Error::Mismatch);
-        }
+        ensure(self.basis.is_same(&other.basis), Error::Mismatch)?;
         if self.samples == 0 {
             self.offset = other.offset;
         }

@@ -3,7 +3,7 @@
 use super::config::{Color, Config, NonFinite};
 use super::folds::Fold;
 use crate::basis::{Basis, MAX_DIMS};
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::lanes::{LANES, Lanes};
 use crate::real::Real;
 use crate::rows::{first, from, halves_mut, row_at};
@@ -85,9 +85,7 @@ impl<'a> Reader<'a> {
     /// [`Error::Range`] if the arrays' lengths do not belong together, [`Error::NoSamples`] if they are empty.
     pub(crate) fn new(config: &Config, samples: Samples<'a>) -> Result<Self, Error> {
         let n = samples.f.len().checked_div(config.channels).unwrap_or(0);
-        if n == 0 && samples.f.is_empty() {
-            return Err(Error::NoSamples);
-        }
+        ensure(n > 0 || !samples.f.is_empty(), Error::NoSamples)?;
         let stride = config.step();
         // The last row may end early: all but one need a whole stride.
         let needed = (n.max(1) - 1).checked_mul(stride).and_then(|len| len.checked_add(config.dims));
@@ -96,12 +94,8 @@ impl<'a> Reader<'a> {
             && samples.u.len() <= n.saturating_mul(stride)
             && samples.controls.len() == n.saturating_mul(config.controls)
             && samples.control_integrals.len() == config.controls;
-        if !lengths_fit || u32::try_from(n).is_err() {
-            return Err(Error::Range);
-        }
-        if !samples.control_integrals.iter().all(|value| value.is_finite()) {
-            return Err(Error::NotFinite);
-        }
+        ensure(lengths_fit && u32::try_from(n).is_ok(), Error::Range)?;
+        ensure(samples.control_integrals.iter().all(|value| value.is_finite()), Error::NotFinite)?;
         Ok(Self {
             samples,
             n,
@@ -339,10 +333,8 @@ impl<'a> Sample<'a> {
     /// # Errors
     /// [`Error::NotFinite`], or [`Error::Range`] for a position outside [0, 1].
     pub(crate) fn check(&self) -> Result<(), Error> {
-        if !self.is_finite() {
-            return Err(Error::NotFinite);
-        }
-        if self.u.iter().all(|u| (0.0..=1.0).contains(u)) { Ok(()) } else { Err(Error::Range) }
+        ensure(self.is_finite(), Error::NotFinite)?;
+        ensure(self.u.iter().all(|u| (0.0..=1.0).contains(u)), Error::Range)
     }
 
     /// Writes the position and the control functions to lane `lane`.

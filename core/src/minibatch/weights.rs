@@ -2,7 +2,7 @@
 
 use super::Batch;
 use super::system::System;
-use crate::Error;
+use crate::error::{Error, ensure};
 use crate::mis::Solver;
 use crate::real::saturate;
 
@@ -37,9 +37,7 @@ use crate::real::saturate;
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
 pub fn weights(batch: &Batch<'_>, solver: Solver, weight: &mut [f32]) -> Result<(), Error> {
-    if weight.len() != batch.len() {
-        return Err(Error::Range);
-    }
+    ensure(weight.len() == batch.len(), Error::Range)?;
     let mut system = System::new(batch.techniques());
     system.add(batch, 0.0)?;
     let correction = system.correction(solver)?;

@@ -15,7 +15,7 @@
 use super::linear::{self, MAX_TECHNIQUES, System, Vector};
 use super::memory::{Sums, len, record_len, sums_len};
 use super::solver::Solver;
-use crate::error::{Error, check_part};
+use crate::error::{Error, check_part, ensure};
 use crate::matrix::{copy, first, first_mut, rows, rows_mut};
 use crate::real::saturate;
 
@@ -52,12 +52,8 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     /// Errors: as for [`OptimalMis::new`].
     pub fn resume(memory: M, counts: &[u32], integrals: usize) -> Result<Self, Error> {
         let needed = len(counts.len(), integrals);
-        if needed == 0 || counts.contains(&0) {
-            return Err(Error::Range);
-        }
-        if memory.as_ref().len() < needed {
-            return Err(Error::Memory);
-        }
+        ensure(needed > 0 && !counts.contains(&0), Error::Range)?;
+        ensure(memory.as_ref().len() >= needed, Error::Memory)?;
         let mut all = [0; MAX_TECHNIQUES];
         copy(&mut all, counts);
         Ok(OptimalMis { counts: all, techniques: counts.len(), integrals, memory })
@@ -81,9 +77,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     /// Errors: [`Error::Range`] for a wrong length or a ridge outside [`RIDGE_RANGE`](super::RIDGE_RANGE);
     /// [`Error::NotFinite`] for a ridge that is NaN or infinite; [`Error::NoSamples`].
     pub fn solve(&self, solver: Solver, estimate: &mut [f32]) -> Result<(), Error> {
-        if estimate.len() != self.integrals {
-            return Err(Error::Range);
-        }
+        ensure(estimate.len() == self.integrals, Error::Range)?;
         let (sums, rounds) = self.sums()?;
         let system = self.system(solver)?;
         for (out, record) in estimate.iter_mut().zip(rows(sums.records, record_len(self.techniques))) {
@@ -107,9 +101,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     /// Used on samples other than the ones it came from, it gives unbiased estimates. [`Solver::Progressive`] stands
     /// for the alpha that the current batch uses, [`Solver::Balance`] for zeros. Errors as for [`OptimalMis::solve`].
     pub fn alpha(&self, solver: Solver, alpha: &mut [f32]) -> Result<(), Error> {
-        if self.integrals.checked_mul(self.techniques) != Some(alpha.len()) {
-            return Err(Error::Range);
-        }
+        ensure(self.integrals.checked_mul(self.techniques) == Some(alpha.len()), Error::Range)?;
         let (sums, _) = self.sums()?;
         let system = self.system(solver)?;
         let records = rows(sums.records, record_len(self.techniques)).zip(rows(sums.alphas, self.techniques));
@@ -165,16 +157,10 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// infinity among the densities (combine delta distributions outside) or values.
     pub fn add(&mut self, technique: usize, pdf: &[f32], value: &[f32]) -> Result<(), Error> {
         let techniques = self.techniques;
-        if pdf.len() != techniques || value.len() != self.integrals {
-            return Err(Error::Range);
-        }
-        let Some(&own) = pdf.get(technique) else { return Err(Error::Range) };
-        if !pdf.iter().chain(value).all(|x| x.is_finite()) {
-            return Err(Error::NotFinite);
-        }
-        if own <= 0.0 || pdf.iter().any(|&p| p < 0.0) {
-            return Err(Error::Range);
-        }
+        ensure(pdf.len() == techniques && value.len() == self.integrals, Error::Range)?;
+        let own = *pdf.get(technique).ok_or(Error::Range)?;
+        ensure(pdf.iter().chain(value).all(|x| x.is_finite()), Error::NotFinite)?;
+        ensure(own > 0.0 && pdf.iter().all(|&p| p >= 0.0), Error::Range)?;
         let sum: f64 = pdf.iter().zip(&self.counts).map(|(&p, &n)| f64::from(p) * f64::from(n)).sum();
         let mut ratio = Vector::default();
         ratio.iter_mut().zip(pdf).for_each(|(ratio, &p)| *ratio = f64::from(p) / sum);
@@ -205,9 +191,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// Errors, which change nothing: [`Error::Unsupported`] for [`Solver::Progressive`]; others as for
     /// [`OptimalMis::solve`].
     pub fn next_batch(&mut self, solver: Solver) -> Result<(), Error> {
-        if solver == Solver::Progressive {
-            return Err(Error::Unsupported);
-        }
+        ensure(solver != Solver::Progressive, Error::Unsupported)?;
         let system = self.system(solver)?;
         let techniques = self.techniques;
         let sums = self.sums_mut()?;
@@ -234,9 +218,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// Errors: [`Error::Mismatch`] unless both have the same counts and number of integrals.
     pub fn merge<N: AsRef<[f64]>>(&mut self, other: &OptimalMis<N>) -> Result<(), Error> {
         let like = self.techniques == other.techniques && self.integrals == other.integrals;
-        if !like || !same(&self.counts, &other.counts) {
-            return Err(Error::Mismatch);
-        }
+        ensure(like && same(&self.counts, &other.counts), Error::Mismatch)?;
         let sums = sums_len(self.techniques, self.integrals);
         let into = first_mut(self.memory.as_mut(), sums).iter_mut();
         into.zip(other.memory.as_ref()).for_each(|(to, from)| *to += from);

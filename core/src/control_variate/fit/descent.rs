@@ -12,7 +12,7 @@ use super::super::result::{self, Outcome, Summary};
 use super::super::samples::{Reader, Samples, Subset};
 use crate::arena::Arena;
 use crate::basis::Basis;
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::lanes::{self, LANES};
 use crate::matrix::{at, copy, from_mut, rows_mut};
 use crate::real::Real;
@@ -90,12 +90,8 @@ pub fn estimate_from<R: Real>(
     let reader = Reader::new(config, samples)?;
     Plan::new::<R>(config, basis.columns(), reader.len())?;
     let columns = config.controls + basis.columns();
-    if coefficients.len() != columns * reader.channels() {
-        return Err(Error::Range);
-    }
-    if !coefficients.iter().all(|value| value.is_finite()) {
-        return Err(Error::NotFinite);
-    }
+    ensure(coefficients.len() == columns * reader.channels(), Error::Range)?;
+    ensure(coefficients.iter().all(|value| value.is_finite()), Error::NotFinite)?;
     reader.check()?;
     let loaded = design::size(reader.len(), columns, reader.channels());
     let needed = loaded.and_then(|loaded| loaded.checked_add(size(columns, reader.channels())));

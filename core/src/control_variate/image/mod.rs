@@ -53,7 +53,7 @@ use super::config::{Color, Config, Estimate, Estimator, NonFinite, Solver};
 use super::samples::{Reader, Samples};
 use crate::arena::Arena;
 use crate::basis::Basis;
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::lanes::LANES;
 use crate::processor::{Portable, Processor};
 use batch::Batch;
@@ -81,7 +81,7 @@ fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
     let is_halved = config.estimator == Estimator::KFold && image.has_known();
     let solver = matches!(config.solver, Solver::Auto | Solver::NormalEquations);
     let samples = config.color == Color::PerChannel && config.non_finite == NonFinite::Error && config.controls == 0;
-    if estimator && !is_halved && solver && samples { Ok(()) } else { Err(Error::Unsupported) }
+    ensure(estimator && !is_halved && solver && samples, Error::Unsupported)
 }
 
 /// Estimates every pixel of an image from `samples.f.len() / (pixels channels)` samples in each, pixel after pixel.
@@ -135,9 +135,7 @@ pub fn estimate_image_by<P: Processor>(
     let reader = Reader::new(config, samples)?;
     image.check(config, layout.pixels, samples.f.len())?;
     let n = reader.len() / layout.pixels.max(1);
-    if n * layout.pixels != reader.len() {
-        return Err(Error::Range);
-    }
+    ensure(n * layout.pixels == reader.len(), Error::Range)?;
     let layout = Layout { n, ..layout };
     let mut basis = Basis::empty();
     basis.set(config.basis, layout.shape);

@@ -4,7 +4,7 @@ use super::importances::Table;
 use super::kernel::{ARITY, Block, Kernel, prefetch};
 use super::mixture::{Mixture, Ways};
 use super::tree::{self, CHILDREN, Levels, Node};
-use crate::Error;
+use crate::error::{Error, ensure};
 use crate::rng::{Rng, split_mix};
 use crate::rows::{from, halves};
 
@@ -235,8 +235,7 @@ const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
 /// Errors: [`Error::Range`] unless there are as many weights as indices, or none at all.
 pub(super) fn check_lengths(index: &[u32], weight: &Option<&mut [f32]>) -> Result<(), Error> {
-    let differ = weight.as_ref().is_some_and(|weight| weight.len() != index.len());
-    if differ { Err(Error::Range) } else { Ok(()) }
+    ensure(weight.as_ref().is_none_or(|weight| weight.len() == index.len()), Error::Range)
 }
 
 /// The bits of draw `k`: draws need no order.
