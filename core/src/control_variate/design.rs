@@ -25,40 +25,46 @@ pub(crate) struct Design<'a, R> {
     /// What was subtracted from each column: its sample mean.
     pub(crate) column_means: &'a [R],
     /// How stored values map to the caller's.
-    pub(crate) units: [Units<R>; Config::MAX_CHANNELS],
+    pub(crate) units: Units<R>,
 }
 
-/// value = offset + 2^exponent * stored
+/// value = 2^exponent (offset + stored)
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Units<R> {
-    pub(crate) offset: R,
-    pub(crate) exponent: i32,
+    pub(crate) offsets: PerChannel<R>,
+    pub(crate) exponents: PerChannel<i32>,
 }
 
 impl<R: Real> Units<R> {
-    /// The caller's value for a stored one.
-    pub(crate) fn value(&self, stored: R) -> f64 {
-        libm::scalbn(self.offset.to_f64() + stored.to_f64(), self.exponent)
+    /// 2^-exponent
+    pub(crate) fn scales(&self) -> PerChannel<R> {
+        self.exponents.map(|exponent| R::ONE.scale(-exponent))
+    }
+
+    /// The caller's value for a channel's stored one.
+    pub(crate) fn value(&self, channel: usize, stored: R) -> f64 {
+        libm::scalbn(self.offsets[channel].to_f64() + stored.to_f64(), self.exponents[channel])
     }
 
     /// The caller's length for a stored one.
-    pub(crate) fn length(&self, stored: R) -> f64 {
-        libm::scalbn(stored.to_f64(), self.exponent)
+    pub(crate) fn length(&self, channel: usize, stored: R) -> f64 {
+        libm::scalbn(stored.to_f64(), self.exponents[channel])
     }
 
     /// The stored length for a caller's.
-    pub(crate) fn stored_length(&self, value: f32) -> R {
-        R::from_f64(libm::scalbn(f64::from(value), -self.exponent))
+    pub(crate) fn stored_length(&self, channel: usize, value: f32) -> R {
+        R::from_f64(libm::scalbn(f64::from(value), -self.exponents[channel]))
     }
 
     /// A length stored in other units, in these.
-    pub(crate) fn converted(&self, length: R, other: &Self) -> R {
-        if self.exponent == other.exponent { length } else { length.scale(other.exponent - self.exponent) }
+    pub(crate) fn converted(&self, channel: usize, length: R, other: &Self) -> R {
+        let by = other.exponents[channel] - self.exponents[channel];
+        if by == 0 { length } else { length.scale(by) }
     }
 
     /// A value stored in other units, in these.
-    pub(crate) fn relative(&self, stored: R, other: &Self) -> R {
-        self.converted(other.offset + stored, other) - self.offset
+    pub(crate) fn relative(&self, channel: usize, stored: R, other: &Self) -> R {
+        self.converted(channel, other.offsets[channel] + stored, other) - self.offsets[channel]
     }
 }
 
@@ -87,7 +93,7 @@ impl<'a, R: Real> Design<'a, R> {
         let mut values = Panel::new(arena.take_lanes(count * channels), channels);
         let column_means = arena.zeros(columns);
         let mut units = units(reader, subset);
-        let factors = units.map(|unit| R::ONE.scale(-unit.exponent));
+        let scales = units.scales();
         let mut x = [[R::ZERO; LANES]; MAX_DIMS];
         let mut h = [[R::ZERO; LANES]; Config::MAX_CONTROLS];
         let mut f = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
@@ -103,8 +109,8 @@ impl<'a, R: Real> Design<'a, R> {
             if let Some(panel) = column_panels.next() {
                 reader.columns(basis, &x, &h, panel);
             }
-            for (((out, f), &factor), unit) in values.iter_mut().zip(&f).zip(&factors).zip(&units) {
-                *out = f.map(|f| f * factor - unit.offset);
+            for (((out, f), &scale), &offset) in values.iter_mut().zip(&f).zip(&*scales).zip(&*units.offsets) {
+                *out = f.map(|f| f * scale - offset);
             }
         }
         drop(column_panels);
@@ -122,9 +128,7 @@ impl<'a, R: Real> Design<'a, R> {
             for _ in 0..1 + usize::from(R::NARROW) {
                 let mut means = PerChannel::default();
                 self::centre(&mut values, n, first_mut(&mut *means, channels));
-                for (unit, &mean) in units.iter_mut().zip(means.iter()) {
-                    unit.offset += mean;
-                }
+                units.offsets += means;
             }
         }
         let (panels, values) = (panels.into_shared(), values.into_shared());
@@ -249,23 +253,18 @@ fn clear_unused<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize) {
 
 /// Where the stored values' zero and unit lie: at the first sample, so that constants are exact, and, for a type whose
 /// range squares could leave, at a power of two near the largest value.
-pub(crate) fn units<R: Real>(reader: &Reader<'_>, subset: Subset) -> [Units<R>; Config::MAX_CHANNELS] {
-    let mut units = [Units::default(); Config::MAX_CHANNELS];
+fn units<R: Real>(reader: &Reader<'_>, subset: Subset) -> Units<R> {
+    let mut units = Units::default();
     if R::NARROW {
-        let mut largest = [R::ZERO; Config::MAX_CHANNELS];
+        let mut largest = PerChannel::<R>::default();
         reader.each(subset, |sample| {
-            for (largest, value) in largest.iter_mut().zip(reader.values::<R>(sample)) {
-                *largest = largest.max(value.abs());
-            }
+            largest = largest.zip(reader.values::<R>(sample), |largest, value| largest.max(value.abs()));
         });
-        for (unit, largest) in units.iter_mut().zip(largest) {
-            unit.exponent = if largest > R::ZERO { largest.exponent().clamp(-126, 126) } else { 0 };
-        }
+        let exponent = |largest: R| if largest > R::ZERO { largest.exponent().clamp(-126, 126) } else { 0 };
+        units.exponents = largest.map(exponent);
     }
     if let Some(sample) = reader.first(subset) {
-        for (unit, value) in units.iter_mut().zip(reader.values::<R>(&sample)) {
-            unit.offset = value * R::ONE.scale(-unit.exponent);
-        }
+        units.offsets = reader.values(&sample) * units.scales();
     }
     units
 }

@@ -2,6 +2,7 @@
 
 use super::config::{Color, Config, NonFinite};
 use super::folds::Fold;
+use super::per_channel::PerChannel;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::error::{Error, ensure};
 use crate::lanes::{LANES, Lanes};
@@ -215,7 +216,7 @@ impl<'a> Reader<'a> {
             if self.is_used(index, subset) {
                 let sample = self.get(index);
                 sample.put(lane, x, h);
-                for (f, value) in f.iter_mut().zip(self.values::<R>(&sample)) {
+                for (f, value) in f.iter_mut().zip(self.values::<R>(&sample).0) {
                     f[lane % LANES] = value;
                 }
                 lane += 1;
@@ -230,8 +231,8 @@ impl<'a> Reader<'a> {
     }
 
     /// The values of a sample that are regressed: its channels, or its luminance.
-    pub(crate) fn values<R: Real>(&self, sample: &Sample<'_>) -> [R; Config::MAX_CHANNELS] {
-        let mut values = [R::ZERO; Config::MAX_CHANNELS];
+    pub(crate) fn values<R: Real>(&self, sample: &Sample<'_>) -> PerChannel<R> {
+        let mut values = PerChannel::default();
         if self.luminance {
             values[0] = R::from_f32(luminance(sample.f));
         } else {
@@ -298,24 +299,20 @@ impl<'a> Reader<'a> {
     }
 
     /// For a luminance-ratio estimate, a sample's colour and its luminance.
-    pub(crate) fn colour(&self, sample: &Sample<'_>) -> Option<[f64; 4]> {
+    pub(crate) fn colour(&self, sample: &Sample<'_>) -> Option<PerChannel<f64>> {
         match (self.luminance, sample.f) {
-            (true, &[red, green, blue]) => Some([red, green, blue, luminance(sample.f)].map(f64::from)),
+            (true, &[red, green, blue]) => Some(PerChannel([red, green, blue, luminance(sample.f)].map(f64::from))),
             _ => None,
         }
     }
 
     /// For a luminance-ratio estimate, the mean colour of the used samples and its luminance.
-    pub(crate) fn mean_colour(&self) -> Option<[f64; 4]> {
+    pub(crate) fn mean_colour(&self) -> Option<PerChannel<f64>> {
         if !self.luminance {
             return None;
         }
-        let mut sums = [0.0; 4];
-        let used = self.each(Subset::All, |sample| {
-            for (sum, value) in sums.iter_mut().zip(self.colour(sample).into_iter().flatten()) {
-                *sum += value;
-            }
-        });
+        let mut sums = PerChannel::default();
+        let used = self.each(Subset::All, |sample| sums += self.colour(sample).unwrap_or_default());
         Some(sums.map(|sum| sum / used.max(1) as f64))
     }
 }

@@ -98,14 +98,14 @@ pub fn estimate_from<R: Real>(
     let mut arena = Arena::new(workspace, needed)?;
     let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena).ok_or(Error::NoSamples)?;
     let solutions = arena.take(coefficients.len());
-    let unit = |index: usize| at(&design.units, index / columns.max(1));
+    let (units, channel) = (design.units, |index: usize| index / columns.max(1));
     for (index, (out, &value)) in solutions.iter_mut().zip(&*coefficients).enumerate() {
-        *out = unit(index).stored_length(value);
+        *out = units.stored_length(channel(index), value);
     }
     let summary = Summary::of(&design, &reader);
     let outcome = descend(&design, config, &basis, solutions, summary.variance, &mut arena);
     for (index, (out, &value)) in coefficients.iter_mut().zip(&*solutions).enumerate() {
-        *out = result::saturate(unit(index).length(value));
+        *out = result::saturate(units.length(channel(index), value));
     }
     Ok(summary.finish(outcome))
 }
