@@ -7,7 +7,7 @@
 //! coordinates, whose integral the trapezoid rule gives: the correction's mean is 0 whatever was fitted.
 
 use super::batch::{Batch, MAX_FIXED};
-use super::call::{Call, Layout};
+use super::call::Call;
 use super::fit::Fits;
 use super::groups::Place;
 use super::products::{
@@ -49,13 +49,11 @@ const CELLS: usize = 16;
 const SQRT_3: f32 = 1.732_050_8;
 const SQRT_5: f32 = 2.236_068;
 
-impl Layout<'_> {
+impl Call<'_> {
     pub(super) fn has_edges(&self) -> bool {
         self.config.edges > 0 && self.n >= FEWEST_SAMPLES && !self.is_single_fit()
     }
-}
 
-impl Call<'_> {
     /// Whether a group, `members` of a window, has lit and dark samples, if edges are looked for.
     pub(super) fn has_edge(&self, window: usize, members: &[f32], len: usize) -> bool {
         if !self.has_edges() || len < FEWEST_PIXELS {
