@@ -6,7 +6,7 @@
 
 use crate::real::Real;
 pub(crate) use crate::rows::{
-    at, first, first_mut, from, from_mut, halves, halves_mut, part, part_mut, row_at, row_at_mut, rows, rows_mut,
+    at, first, first_mut, from, from_mut, halves, halves_mut, part, part_mut, row_at, row_at_mut, rows, rows_mut, set,
 };
 use core::ops::{Deref, DerefMut};
 

@@ -19,7 +19,7 @@ use crate::basis::MAX_DIMS;
 use crate::control_variate::Config;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::ldlt;
-use crate::matrix::{at, copy, first_mut, from, from_mut, packed_len, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{at, copy, first_mut, from, from_mut, packed_len, row, row_at, row_at_mut, row_mut, set};
 use crate::real::Real;
 use core::f32::consts::{LN_2, LOG2_E};
 
@@ -309,9 +309,7 @@ impl<'a> Edges<'a> {
         let [count, lit] = [sums.gram, sums.sides].map(|sums| at(sums, 0));
         let odds = lanes::zip(&lit, &count, |lit, count| (lit + 0.5) / (count - lit + 0.5));
         let share = odds.map(|odds| odds / (1.0 + odds));
-        if let Some(first) = weights.first_mut() {
-            *first = lanes::log2(&odds).map(|logarithm| logarithm * LN_2);
-        }
+        set(weights, 0, lanes::log2(&odds).map(|logarithm| logarithm * LN_2));
         let mut all = [NONE; packed_len(MAX_COLUMNS)];
         let matrix = first_mut(&mut all, packed_len(width));
         let mut sides = [NONE; MAX_COLUMNS];

@@ -11,7 +11,7 @@ use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
 use crate::matrix::{
-    at, copy, first, first_mut, from_mut, halves, halves_mut, row, row_at, row_at_mut, row_mut, rows, rows_mut,
+    at, copy, first, first_mut, from_mut, halves, halves_mut, row, row_at, row_at_mut, row_mut, rows, rows_mut, set,
 };
 use crate::real::Real;
 use core::array::from_fn;
@@ -288,9 +288,7 @@ impl<'a> Deviations<'a> {
         for j in 0..width {
             for k in 0..j {
                 let product = at(self.functions, j * width + k);
-                if let Some(out) = self.functions.get_mut(k * width + j) {
-                    *out = product;
-                }
+                set(self.functions, k * width + j, product);
                 lanes::keep_together();
             }
         }

@@ -6,7 +6,7 @@ use super::kernel::{Kernel, Portable};
 use super::mixture::Mixture;
 use crate::error::{Error, ensure};
 use crate::rng::Rng;
-use crate::rows::first;
+use crate::rows::{first, set};
 
 /// A search for an item not yet taken ends where so many should have been found: once in e^64 searches, or where the
 /// table's memory has been damaged.
@@ -55,9 +55,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
             if let Some(out) = weight.as_mut().and_then(|weight| weight.get_mut(drawn)) {
                 *out = ((1.0 / chance + (batch - (drawn + 1) as f64)) / f64::from(items)) as f32;
             }
-            if let Some(out) = index.get_mut(drawn) {
-                *out = item;
-            }
+            set(index, drawn, item);
             self.turn(item);
             self.refresh(item);
         }

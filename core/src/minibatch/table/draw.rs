@@ -6,7 +6,7 @@ use super::mixture::{Mixture, Ways};
 use super::tree::{self, CHILDREN, Levels, Node};
 use crate::error::{Error, ensure};
 use crate::rng::{Rng, split_mix};
-use crate::rows::{from, halves};
+use crate::rows::{from, halves, set};
 
 /// How many draws go down the tree together: enough to hide the latency of memory, few enough for the first cache.
 pub(super) const CHUNK: usize = 64;
@@ -150,9 +150,7 @@ impl Descent<'_> {
             let Some(block) = self.blocks.get(place as usize) else { continue };
             let (item, sum) = K::find_item(block, fraction);
             (*total, *q) = (sum, block[item % ARITY]);
-            if let Some(out) = index.get_mut(slot as usize) {
-                *out = place * ARITY as u32 + item as u32;
-            }
+            set(index, slot as usize, place * ARITY as u32 + item as u32);
         }
         // Nothing to do, unless the table's memory has been damaged: whatever it holds, what is drawn exists.
         for out in index.iter_mut() {
@@ -166,9 +164,7 @@ impl Descent<'_> {
             *result = self.weight(q, total, weight);
         }
         for (&result, &slot) in results.iter().zip(&slot).take(trees) {
-            if let Some(out) = weight.get_mut(slot as usize) {
-                *out = result;
-            }
+            set(weight, slot as usize, result);
         }
         for &slot in uniform_slot.iter().take(weight.len().saturating_sub(trees)) {
             let (Some(&item), Some(out)) = (index.get(slot as usize), weight.get_mut(slot as usize)) else { continue };
