@@ -78,12 +78,9 @@ pub(crate) fn check_descent(descent: &nf_cv_descent) -> Result<(), Wrong> {
 
 /// The core's configuration with that of a descent.
 fn with(config: Config, descent: &nf_cv_descent) -> Result<Config, Wrong> {
+    let optimizers = [Optimizer::Momentum, Optimizer::Adam, Optimizer::Plain];
     Ok(Config {
-        optimizer: pick(
-            descent.optimizer,
-            &[Optimizer::Momentum, Optimizer::Adam, Optimizer::Plain],
-            c"optimizer must be one of NF_OPTIMIZER_*, 0 to 2",
-        )?,
+        optimizer: pick(descent.optimizer, &optimizers, c"optimizer must be one of NF_OPTIMIZER_*, 0 to 2")?,
         iterations: descent.iterations as usize,
         learning_rate: descent.learning_rate,
         momentum: descent.momentum,
