@@ -11,13 +11,38 @@
 //! `F = sum_s f / S / R - (sum_s p / S / R - 1)' alpha`,
 //!
 //! the balance estimate less what the samples got wrong about the densities' integrals, each of which is 1.
+//!
+//! The sums lie in a memory of f64 as
+//!
+//! `samples | ratio[J] | matrix[J (J + 1) / 2] | P times balance, progressive, moment[J] | P times alpha[J]`
+//!
+//! All before the alphas are sums over the samples: they decay and are merged as they lie there.
 
 use super::linear::{self, MAX_TECHNIQUES, System, Vector};
-use super::memory::{Sums, len, record_len, sums_len};
 use super::solver::Solver;
 use crate::error::{Error, check_part, ensure};
-use crate::matrix::{copy, first, first_mut, rows, rows_mut};
+use crate::matrix::{at, copy, first, first_mut, packed_len, rows, rows_mut};
 use crate::real::saturate;
+
+/// The f64 that [`OptimalMis`] needs; 0 if `techniques` is not in 1..=16, `integrals` is 0, or no memory could hold
+/// them.
+pub const fn len(techniques: usize, integrals: usize) -> usize {
+    if techniques == 0 || techniques > MAX_TECHNIQUES || integrals == 0 {
+        return 0;
+    }
+    let Some(of_integrals) = integrals.checked_mul(record_len(techniques) + techniques) else { return 0 };
+    let Some(len) = of_integrals.checked_add(sums_len(techniques, 0)) else { return 0 };
+    if len <= isize::MAX as usize / size_of::<f64>() { len } else { 0 }
+}
+
+/// How much of a memory that is long enough are sums.
+const fn sums_len(techniques: usize, integrals: usize) -> usize {
+    1 + techniques + packed_len(techniques) + integrals * record_len(techniques)
+}
+
+const fn record_len(techniques: usize) -> usize {
+    2 + techniques
+}
 
 /// Sums from which the integrals of several functions are estimated with optimal MIS weights.
 ///
@@ -118,7 +143,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         solver.check()?;
         let (sums, rounds) = self.sums()?;
         let scale = self.counts.map(|count| libm::sqrt(f64::from(count)));
-        Ok(System::new(solver, sums.matrix, rounds, scale, self.techniques, sums.samples))
+        Ok(System::new(solver, sums.matrix, rounds, scale, self.techniques, at(sums.samples, 0)))
     }
 
     fn sum_counts(&self) -> f64 {
@@ -126,10 +151,11 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     }
 
     /// The sums and the number of rounds R, which is positive.
-    fn sums(&self) -> Result<(Sums<f64, &[f64]>, f64), Error> {
-        let sums = Sums::of(self.memory.as_ref(), self.techniques, self.integrals).ok_or(Error::Memory)?;
-        let rounds = sums.samples / self.sum_counts();
-        if rounds > 0.0 { Ok((sums, rounds)) } else { Err(Error::NoSamples) }
+    fn sums(&self) -> Result<(Sums<&[f64]>, f64), Error> {
+        let sums = Sums::of(self.memory.as_ref(), self.techniques, self.integrals, <[f64]>::split_at_checked)?;
+        let rounds = at(sums.samples, 0) / self.sum_counts();
+        ensure(rounds > 0.0, Error::NoSamples)?;
+        Ok((sums, rounds))
     }
 }
 
@@ -167,7 +193,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
 
         let per_sample = 1.0 / self.sum_counts();
         let sums = self.sums_mut()?;
-        *sums.samples += 1.0;
+        sums.samples.iter_mut().for_each(|samples| *samples += 1.0);
         sums.ratio.iter_mut().zip(&ratio).for_each(|(sum, ratio)| *sum += ratio);
         linear::add_products(sums.matrix, first(&ratio, techniques), 1.0);
         let records = rows_mut(sums.records, record_len(techniques)).zip(rows(sums.alphas, techniques));
@@ -225,8 +251,38 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         Ok(())
     }
 
-    fn sums_mut(&mut self) -> Result<Sums<&mut f64, &mut [f64]>, Error> {
-        Sums::of_mut(self.memory.as_mut(), self.techniques, self.integrals).ok_or(Error::Memory)
+    fn sums_mut(&mut self) -> Result<Sums<&mut [f64]>, Error> {
+        Sums::of(self.memory.as_mut(), self.techniques, self.integrals, <[f64]>::split_at_mut_checked)
+    }
+}
+
+/// The memory's parts: sums over the samples s, with S = sum_k n_k p_k.
+struct Sums<S> {
+    /// How many samples, less what has decayed: one number.
+    samples: S,
+    /// sum_s p / S, one per technique.
+    ratio: S,
+    /// A = sum_s p p' / S^2, its lower triangle by rows.
+    matrix: S,
+    /// Of each integral sum_s f / S, the sum of the progressive estimator's terms, and b = sum_s f p / S^2.
+    records: S,
+    /// Of each integral the progressive estimator's alpha, which is no sum.
+    alphas: S,
+}
+
+impl<S> Sums<S> {
+    fn of(
+        memory: S,
+        techniques: usize,
+        integrals: usize,
+        split: impl Fn(S, usize) -> Option<(S, S)>,
+    ) -> Result<Self, Error> {
+        let split = |memory, len| split(memory, len).ok_or(Error::Memory);
+        let (sums, alphas) = split(memory, sums_len(techniques, integrals))?;
+        let (samples, rest) = split(sums, 1)?;
+        let (ratio, rest) = split(rest, techniques)?;
+        let (matrix, records) = split(rest, packed_len(techniques))?;
+        Ok(Sums { samples, ratio, matrix, records, alphas })
     }
 }
 
