@@ -147,20 +147,6 @@ impl<T: 'static, S: DerefMut<Target = [T]>> Triangle<S> {
     }
 }
 
-impl<'a, T> Panel<&'a mut [T]> {
-    /// Forgets all rows but the first `count`.
-    pub(crate) fn truncate(&mut self, count: usize) {
-        let entries = core::mem::take(&mut self.entries);
-        let len = entries.len().min(count * self.width);
-        self.entries = first_mut(entries, len);
-    }
-
-    /// The same, from now on only to be read.
-    pub(crate) fn into_shared(self) -> Panel<&'a [T]> {
-        Panel { entries: self.entries, width: self.width }
-    }
-}
-
 /// Rows of equal length, one after the other.
 #[derive(Clone, Copy)]
 pub(crate) struct Panel<S> {

@@ -6,7 +6,7 @@ use super::samples::{Reader, Subset};
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::lanes::{self, LANES, Lanes};
-use crate::matrix::{Panel, Triangle, first_mut, from};
+use crate::matrix::{Panel, Triangle, first_mut, from, rows_mut};
 use crate::real::{Real, rounding};
 use core::ops::Deref;
 
@@ -89,8 +89,7 @@ impl<'a, R: Real> Design<'a, R> {
     ) -> Option<Self> {
         let channels = reader.channels();
         let count = reader.count(subset).div_ceil(LANES);
-        let mut panels = Panel::new(arena.take_lanes(count * columns), columns);
-        let mut values = Panel::new(arena.take_lanes(count * channels), channels);
+        let (all_columns, all_values) = (arena.take_lanes(count * columns), arena.take_lanes(count * channels));
         let column_means = arena.zeros(columns);
         let mut units = units(reader, subset);
         let scales = units.scales();
@@ -98,8 +97,8 @@ impl<'a, R: Real> Design<'a, R> {
         let mut h = [[R::ZERO; LANES]; Config::MAX_CONTROLS];
         let mut f = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
         let (mut next, mut n) = (0, 0);
-        let mut column_panels = panels.rows_mut();
-        for values in values.rows_mut() {
+        let mut column_panels = rows_mut(all_columns, columns);
+        for values in rows_mut(all_values, channels) {
             // Lanes that are not filled hold an earlier panel's samples, in range; they are cleared below.
             let filled = reader.panel(subset, &mut next, &mut x, &mut h, &mut f);
             if filled == 0 {
@@ -117,8 +116,10 @@ impl<'a, R: Real> Design<'a, R> {
         if n == 0 {
             return None;
         }
-        panels.truncate(n.div_ceil(LANES));
-        values.truncate(n.div_ceil(LANES));
+        let used = n.div_ceil(LANES);
+        let (all_columns, all_values) =
+            (first_mut(all_columns, used * columns), first_mut(all_values, used * channels));
+        let (mut panels, mut values) = (Panel::new(&mut *all_columns, columns), Panel::new(&mut *all_values, channels));
         clear_unused(&mut panels, n);
         clear_unused(&mut values, n);
         if centre {
@@ -131,7 +132,7 @@ impl<'a, R: Real> Design<'a, R> {
                 units.offsets += means;
             }
         }
-        let (panels, values) = (panels.into_shared(), values.into_shared());
+        let (panels, values) = (Panel::new(&*all_columns, columns), Panel::new(&*all_values, channels));
         Some(Self { n, columns, channels, panels, values, column_means, units })
     }
 
