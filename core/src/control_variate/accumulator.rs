@@ -249,7 +249,6 @@ impl<R: Real> Accumulator<R> {
         self.move_zero(before, sums);
         if self.method == Method::Incremental {
             let (groups, rest) = halves_mut(sums, self.sums_len());
-            self.incremental.refit_now();
             self.incremental.refit(self.samples, &self.config, self.shape, layout, groups, rest);
         }
         Ok(())

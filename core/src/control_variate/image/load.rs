@@ -111,7 +111,9 @@ impl Batch<'_> {
         let mut sums = [[NONE; 3]; 2 * Config::MAX_CHANNELS];
         for begin in (0..call.n).step_by(AT_ONCE) {
             let count = AT_ONCE.min(call.n - begin);
-            call.read_values(self, (block, row), begin..begin + count, samples.values);
+            let (pixels, which) = (self.pixels((block, row)), begin..begin + count);
+            call.put_values(self, (block, row), &pixels, &which, 0, samples.values);
+            self.put_in_units(samples.values);
             for ([first, total, squares], value) in sums.iter_mut().zip(samples.values.iter()) {
                 *first = if begin == 0 { value[0] } else { *first };
                 for value in value.iter().take(count) {

@@ -115,19 +115,6 @@ impl Call<'_> {
         }
     }
 
-    /// Reads the values alone of some samples of a slot's pixels.
-    #[inline]
-    pub(super) fn read_values(
-        &self,
-        batch: &Batch<'_>,
-        slot: (usize, usize),
-        samples: Range<usize>,
-        values: &mut [Four],
-    ) {
-        self.put_values(batch, slot, &batch.pixels(slot), &samples, 0, values);
-        batch.put_in_units(values);
-    }
-
     /// The slices of samples that were read.
     #[inline]
     pub(super) fn slices(&self, rows: &Rows<'_>) -> Four {
@@ -140,7 +127,7 @@ impl Call<'_> {
 
     /// Values of samples of each pixel, as they were given but for factors and what is known of them: in each column
     /// from `row` on.
-    fn put_values(
+    pub(super) fn put_values(
         &self,
         batch: &Batch<'_>,
         (block, slot): (usize, usize),
