@@ -221,7 +221,7 @@ fn centre<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means: &mut [R
 /// the values.
 fn clear_constant<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means: &[R], integrals: &[f32]) {
     for (j, (&mean, &integral)) in means.iter().zip(integrals).enumerate() {
-        let noise = rounding::<R>() * (mean.abs() + R::from_f32(integral).abs());
+        let noise = rounding::<R>() * (mean.abs() + R::from(integral).abs());
         if (square(panels, j) / R::from_usize(n)).sqrt() <= noise {
             for column in panels.column_mut(j) {
                 *column = [R::ZERO; LANES];

@@ -234,10 +234,10 @@ impl<'a> Reader<'a> {
     pub(crate) fn values<R: Real>(&self, sample: &Sample<'_>) -> PerChannel<R> {
         let mut values = PerChannel::default();
         if self.luminance {
-            values[0] = R::from_f32(luminance(sample.f));
+            values[0] = R::from(luminance(sample.f));
         } else {
             for (value, &f) in values.iter_mut().zip(sample.f) {
-                *value = R::from_f32(f);
+                *value = R::from(f);
             }
         }
         values
@@ -258,18 +258,18 @@ impl<'a> Reader<'a> {
             if let (2, 2, 4, Some(next)) = (self.dims, self.stride, count, rows.first_chunk::<8>()) {
                 for (step, &[a, b]) in next.as_chunks().0.iter().enumerate() {
                     let lane = lane + step * LANES + own;
-                    [x[0][lane % L], x[1][lane % L]] = [a, b].map(R::from_f32);
+                    [x[0][lane % L], x[1][lane % L]] = [a, b].map(R::from);
                 }
                 continue;
             }
             for step in 0..count {
                 let lane = lane + step * LANES + own;
                 match (self.dims, rows) {
-                    (2, &[a, b, ..]) => [x[0][lane % L], x[1][lane % L]] = [a, b].map(R::from_f32),
+                    (2, &[a, b, ..]) => [x[0][lane % L], x[1][lane % L]] = [a, b].map(R::from),
                     (3, &[a, b, c, ..]) => {
-                        [x[0][lane % L], x[1][lane % L], x[2][lane % L]] = [a, b, c].map(R::from_f32);
+                        [x[0][lane % L], x[1][lane % L], x[2][lane % L]] = [a, b, c].map(R::from);
                     }
-                    _ => x.iter_mut().zip(rows).take(self.dims).for_each(|(x, &u)| x[lane % L] = R::from_f32(u)),
+                    _ => x.iter_mut().zip(rows).take(self.dims).for_each(|(x, &u)| x[lane % L] = R::from(u)),
                 }
                 rows = from(rows, self.stride);
             }
@@ -293,7 +293,7 @@ impl<'a> Reader<'a> {
     ) {
         let (controls, functions) = halves_mut(out, self.controls);
         for ((out, h), &integral) in controls.iter_mut().zip(h).zip(self.samples.control_integrals) {
-            *out = h.map(|h| h - R::from_f32(integral));
+            *out = h.map(|h| h - R::from(integral));
         }
         basis.evaluate(x, functions);
     }
@@ -342,10 +342,10 @@ impl<'a> Sample<'a> {
         h: &mut [Lanes<R, L>; Config::MAX_CONTROLS],
     ) {
         for (x, &u) in x.iter_mut().zip(self.u) {
-            x[lane % L] = R::from_f32(u);
+            x[lane % L] = R::from(u);
         }
         for (h, &value) in h.iter_mut().zip(self.h) {
-            h[lane % L] = R::from_f32(value);
+            h[lane % L] = R::from(value);
         }
     }
 }
@@ -361,7 +361,7 @@ fn transpose<R: Real>(rows: &[f32], stride: usize, width: usize, out: &mut [Lane
             for lane in 0..LANES {
                 let row = from(rows, lane * stride);
                 for (out, &value) in out.iter_mut().zip(row).take(width) {
-                    out[lane] = R::from_f32(value);
+                    out[lane] = R::from(value);
                 }
             }
         }
@@ -375,7 +375,7 @@ fn transpose_exact<R: Real, const WIDTH: usize>(rows: &[f32], stride: usize, out
     for lane in 0..LANES {
         if let Some(row) = rows.get(lane * stride..).and_then(<[f32]>::first_chunk::<WIDTH>) {
             for (column, &value) in columns.iter_mut().zip(row) {
-                column[lane] = R::from_f32(value);
+                column[lane] = R::from(value);
             }
         }
     }

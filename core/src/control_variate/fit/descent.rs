@@ -217,12 +217,12 @@ impl<R: Real> Descent<R> {
         let is_adam = config.optimizer == Optimizer::Adam;
         let rate = match config.learning_rate {
             0.0 => R::from_f64(if is_adam { ADAM_RATE } else { 1.0 }),
-            rate => R::from_f32(rate),
+            rate => R::from(rate),
         };
         let rate = if is_adam { rate * deviation } else { rate / curvature };
         let momentum = match config.optimizer {
             Optimizer::Plain => R::ZERO,
-            _ if config.momentum > 0.0 => R::from_f32(config.momentum),
+            _ if config.momentum > 0.0 => R::from(config.momentum),
             Optimizer::Momentum => R::from_f64(MOMENTUM),
             Optimizer::Adam => R::from_f64(ADAM_DECAY[0]),
         };
