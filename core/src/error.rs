@@ -76,14 +76,12 @@ impl From<Error> for i32 {
 }
 
 /// Refuses what is not so.
-#[allow(dead_code, reason = "each feature uses some of it")]
 #[inline]
 pub(crate) fn ensure<E>(is_so: bool, error: E) -> Result<(), E> {
     if is_so { Ok(()) } else { Err(error) }
 }
 
 /// Whether an argument is a number from 0 to 1.
-#[allow(dead_code, reason = "each feature uses some of it")]
 pub(crate) fn check_part(value: f32) -> Result<(), Error> {
     ensure(value.is_finite(), Error::NotFinite)?;
     ensure((0.0..=1.0).contains(&value), Error::Range)
