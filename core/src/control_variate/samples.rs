@@ -276,11 +276,6 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// All values, as they were given.
-    pub(crate) fn inputs(&self) -> &'a [f32] {
-        self.samples.f
-    }
-
     /// Evaluates control functions and basis at `L` positions; `x` has a group of lanes for each coordinate, `h` one
     /// for each control function, and `out` one for each column, control functions first.
     #[inline(always)]

@@ -28,7 +28,7 @@ impl Call<'_> {
         for begin in (0..self.n).step_by(AT_ONCE) {
             let mut four = [NONE; AT_ONCE];
             let values = first_mut(&mut four, AT_ONCE.min(self.n - begin));
-            self.put_rows(self.reader.inputs(), pixels, (self.n, begin), channel, values);
+            self.put_rows(self.reader.samples.f, pixels, (self.n, begin), channel, values);
             for value in values {
                 low = lanes::zip(value, &low, Real::min);
                 high = lanes::zip(value, &high, Real::max);
@@ -143,7 +143,7 @@ impl Call<'_> {
             match batch.ranges.get(index(channel)) {
                 // The survey has read it.
                 Some([only, _]) if self.n == 1 => out.fill(*only),
-                _ => self.put_rows(self.reader.inputs(), pixels, (self.n, samples.start), channel, out),
+                _ => self.put_rows(self.reader.samples.f, pixels, (self.n, samples.start), channel, out),
             }
         }
         for (channel, (out, values)) in rest.iter_mut().zip(inputs).enumerate() {

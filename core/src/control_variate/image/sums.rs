@@ -264,7 +264,7 @@ impl Call<'_> {
     /// A channel of a sample of each pixel, as it was given.
     fn given(&self, pixel: usize, sample: usize, channel: usize) -> Wide {
         let channels = self.config.channels;
-        let values = from(self.reader.inputs(), (pixel * self.n + sample) * channels + channel);
+        let values = from(self.reader.samples.f, (pixel * self.n + sample) * channels + channel);
         wide(&every(self.n * channels, values))
     }
 }
