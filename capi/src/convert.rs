@@ -15,10 +15,8 @@ pub(crate) type Room<T> = MaybeUninit<T>;
 
 /// Whether an object can be there, for all that its address says.
 pub(crate) fn usable<T>(pointer: *const T) -> Result<(), nf_status> {
-    if pointer.is_null() {
-        return Err(NF_ERR_NULL);
-    }
-    if pointer.is_aligned() { Ok(()) } else { Err(NF_ERR_ALIGNMENT) }
+    ensure(!pointer.is_null(), NF_ERR_NULL)?;
+    ensure(pointer.is_aligned(), NF_ERR_ALIGNMENT)
 }
 
 /// A shared reference to one object.
@@ -162,9 +160,7 @@ pub(crate) unsafe fn outputs<'a, T: AnyBits>(pointer: *mut T, len: usize) -> Res
 /// A non-NULL `memory` must be the start of `bytes` bytes that no one else uses.
 pub(crate) unsafe fn memory(memory: *mut c_void, bytes: usize, needed: usize) -> Result<*mut u8, nf_status> {
     usable(memory.cast::<u64>())?;
-    if bytes < needed || needed > isize::MAX as usize {
-        return Err(NF_ERR_MEMORY);
-    }
+    ensure(bytes >= needed && needed <= isize::MAX as usize, NF_ERR_MEMORY)?;
     Ok(memory.cast())
 }
 
@@ -215,8 +211,5 @@ pub(crate) fn product(a: usize, b: usize) -> Result<usize, nf_status> {
 
 fn check<T>(pointer: *const T, len: usize) -> Result<(), nf_status> {
     usable(pointer)?;
-    match len.checked_mul(size_of::<T>()) {
-        Some(bytes) if bytes <= isize::MAX as usize => Ok(()),
-        _ => Err(NF_ERR_RANGE),
-    }
+    ensure(product(len, size_of::<T>())? <= isize::MAX as usize, NF_ERR_RANGE)
 }

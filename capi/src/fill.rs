@@ -23,9 +23,7 @@ pub(crate) unsafe fn fill<'a, T: 'a, S: PixelSampler>(
         if needed == 0 {
             return Ok(());
         }
-        if len < needed {
-            return Err(NF_ERR_MEMORY);
-        }
+        ensure(len >= needed, NF_ERR_MEMORY)?;
         // SAFETY: the caller passes room for `len` numbers, which are no fewer.
         let u = unsafe { convert::outputs(u, needed) }?;
         Ok(sampler::fill(domains, width, height, samples, u)?)

@@ -47,9 +47,7 @@ pub unsafe extern "C" fn nf_gradient_init(
 ) -> nf_status {
     status((|| {
         let size = nf_gradient_size(techniques, parameters);
-        if size == 0 {
-            return Err(NF_ERR_RANGE);
-        }
+        ensure(size > 0, NF_ERR_RANGE)?;
         // SAFETY: the caller passes a place for a pointer.
         let out = unsafe { convert::room(out) }?;
         let header = Header { magic: MAGIC, techniques, parameters, system: System::new(techniques as usize) };
@@ -115,9 +113,7 @@ unsafe fn open<'a>(state: *mut nf_gradient) -> Result<(&'a mut Header, &'a mut [
     // SAFETY: passed on to the caller, who promises more where the number has been found.
     let header = unsafe { convert::reference_mut(state.cast::<Header>()) }?;
     let len = minibatch::gradient_len(header.techniques as usize, header.parameters as usize);
-    if len == 0 {
-        return Err(NF_ERR_STATE);
-    }
+    ensure(len > 0, NF_ERR_STATE)?;
     // SAFETY: nf_gradient_init made the averages right behind the header, which is no part of them.
     let averages = unsafe { convert::slice_mut(state.cast::<Header>().add(1).cast::<f32>(), len) }?;
     Ok((header, averages))

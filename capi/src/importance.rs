@@ -43,9 +43,7 @@ pub unsafe extern "C" fn nf_importance_cross_entropy(
         if rows == 0 {
             return Ok(());
         }
-        if classes == 0 || label.iter().any(|&label| label as usize >= classes) {
-            return Err(NF_ERR_RANGE);
-        }
+        ensure(classes > 0 && label.iter().all(|&label| (label as usize) < classes), NF_ERR_RANGE)?;
         finite(logits)?;
         // Widths that are not 0 for every compiler to see: else there would be a panic.
         let (mut importance, mut loss) = (importance.into_iter().flatten(), loss.into_iter().flatten());
@@ -86,9 +84,7 @@ pub unsafe extern "C" fn nf_importance_squared_error(
         let (output, target, importance) = unsafe {
             (convert::slice(output, len)?, convert::slice(target, len)?, convert::outputs(importance, rows)?)
         };
-        if rows > 0 && outputs == 0 {
-            return Err(NF_ERR_RANGE);
-        }
+        ensure(rows == 0 || outputs > 0, NF_ERR_RANGE)?;
         finite(output)?;
         finite(target)?;
         let pairs = output.chunks_exact(outputs.max(1)).zip(target.chunks_exact(outputs.max(1)));
@@ -159,5 +155,5 @@ pub(crate) fn check_importance(of: &nf_importance_arguments) -> Result<Split, Wr
 
 /// Before anything is written.
 fn finite(values: &[f32]) -> Result<(), nf_status> {
-    if values.iter().all(|value| value.is_finite()) { Ok(()) } else { Err(NF_ERR_NOT_FINITE) }
+    ensure(values.iter().all(|value| value.is_finite()), NF_ERR_NOT_FINITE)
 }

@@ -97,9 +97,7 @@ unsafe fn with_alpha(
     let result = (|| {
         let len = techniques as usize;
         // Before any slice is made: a wild length may reach beyond the caller's arrays.
-        if !(1..=MAX_TECHNIQUES).contains(&len) {
-            return Err(NF_ERR_RANGE);
-        }
+        ensure((1..=MAX_TECHNIQUES).contains(&len), NF_ERR_RANGE)?;
         // SAFETY: passed on to the caller.
         let (pdf, counts, alpha) =
             unsafe { (convert::slice(pdf, len)?, convert::slice(counts, len)?, convert::slice(alpha, len)?) };

@@ -123,9 +123,7 @@ pub unsafe extern "C" fn nf_omis_solve(
     status((|| {
         // SAFETY: the caller passes an object that no one writes meanwhile.
         let omis: OptimalMis<&[f64]> = unsafe { open(omis) }?;
-        if estimate.is_null() && alpha.is_null() {
-            return Err(NF_ERR_NULL);
-        }
+        ensure(!estimate.is_null() || !alpha.is_null(), NF_ERR_NULL)?;
         let len = convert::product(omis.integrals(), omis.techniques())?;
         // SAFETY: the caller passes NULL or room for its integrals, and for those times its techniques.
         let (estimate, alpha) =
@@ -163,9 +161,7 @@ pub unsafe extern "C" fn nf_omis_next_batch(omis: *mut nf_omis, solver: u32, rid
 pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis) -> nf_status {
     status((|| {
         // Two references to one object, one of them exclusive, must never exist.
-        if core::ptr::eq(omis, other) && !other.is_null() {
-            return Err(NF_ERR_RANGE);
-        }
+        ensure(!core::ptr::eq(omis, other) || other.is_null(), NF_ERR_RANGE)?;
         // SAFETY: the caller passes two objects that no one else uses meanwhile; they are two, as just checked.
         let (mut omis, other) = unsafe { (open::<&mut [f64]>(omis)?, open::<&[f64]>(other)?) };
         Ok(omis.merge(&other)?)
@@ -198,9 +194,7 @@ pub unsafe extern "C" fn nf_omis_weights(
     weight: *mut f32,
 ) -> nf_status {
     status((|| {
-        if techniques as usize > MAX_TECHNIQUES {
-            return Err(NF_ERR_RANGE);
-        }
+        ensure(techniques as usize <= MAX_TECHNIQUES, NF_ERR_RANGE)?;
         let samples = batch as usize;
         let pdfs = convert::product(samples, techniques as usize)?;
         // SAFETY: the caller passes arrays of these lengths, of which the last is written and no part of another.
@@ -226,7 +220,7 @@ unsafe fn open<S: Slice<f64>>(omis: *const nf_omis) -> Result<OptimalMis<S>, nf_
     let header = *unsafe { convert::reference(omis.cast::<Header>()) }?;
     let (techniques, integrals) = (header.techniques as usize, header.integrals as usize);
     let len = mis::len(techniques, integrals);
-    let Some(counts) = header.counts.get(..techniques).filter(|_| len > 0) else { return Err(NF_ERR_STATE) };
+    let counts = header.counts.get(..techniques).filter(|_| len > 0).ok_or(NF_ERR_STATE)?;
     // SAFETY: nf_omis_init made the sums right behind the header.
     let sums = unsafe { S::of(omis.cast_mut().cast::<Header>().add(1).cast(), len) }?;
     Ok(OptimalMis::resume(sums, counts, integrals)?)

@@ -81,6 +81,12 @@ const _: () = assert!(
         && Error::Corrupt.status() == NF_ERR_CORRUPT
 );
 
+/// Refuses what is not so.
+#[inline]
+pub(crate) fn ensure<E>(is_so: bool, error: E) -> Result<(), E> {
+    if is_so { Ok(()) } else { Err(error) }
+}
+
 /// What a C function returns for the outcome of its body.
 pub(crate) fn status(result: Result<(), nf_status>) -> nf_status {
     result.err().unwrap_or(NF_OK)

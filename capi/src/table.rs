@@ -81,9 +81,7 @@ pub unsafe extern "C" fn nf_table_init(
 ) -> nf_status {
     status((|| {
         convert::usable(table)?;
-        if items == 0 {
-            return Err(NF_ERR_RANGE);
-        }
+        ensure(items > 0, NF_ERR_RANGE)?;
         let values = match importance.is_null() {
             true => None,
             // SAFETY: the caller passes as many importances as items.
@@ -214,9 +212,7 @@ pub unsafe extern "C" fn nf_table_probabilities(
         let Some(last) = count.checked_sub(1) else { return Ok(()) };
         convert::usable(p)?;
         let bytes = convert::product(last as usize, stride as usize)?.checked_mul(size_of::<f32>());
-        if stride == 0 || bytes.is_none_or(|bytes| bytes >= isize::MAX as usize) {
-            return Err(NF_ERR_RANGE);
-        }
+        ensure(stride > 0 && bytes.is_some_and(|bytes| bytes < isize::MAX as usize), NF_ERR_RANGE)?;
         table.check_items(index)?;
         let mut place = p;
         for index in index.chunks(64) {
@@ -336,14 +332,11 @@ pub(crate) unsafe fn check_table(table: &nf_table) -> Result<(), Wrong> {
 /// How many importances and sums a table's memory has.
 fn lengths(table: &nf_table) -> Result<(usize, usize), Wrong> {
     rule((0.0..=1.0).contains(&table.uniform_fraction), c"uniform_fraction must be 0 to 1")?;
-    if table.magic != MAGIC || table.importance.is_null() || table.blocks as usize > MAX_BLOCKS {
-        return Err(NO_TABLE);
-    }
+    let is_table = table.magic == MAGIC && !table.importance.is_null() && table.blocks as usize <= MAX_BLOCKS;
+    ensure(is_table, NO_TABLE)?;
     let (importance, sums) = parts(table.blocks).ok_or(NO_TABLE)?;
     // nf_table_init put the sums right behind: where that no longer holds, pointers or lengths have been changed since.
-    if table.sums.addr() != table.importance.addr().wrapping_add(importance) {
-        return Err(NO_TABLE);
-    }
+    ensure(table.sums.addr() == table.importance.addr().wrapping_add(importance), NO_TABLE)?;
     Ok((importance / size_of::<f32>(), sums / size_of::<i64>()))
 }
 
@@ -359,9 +352,7 @@ unsafe fn create(
     make: impl for<'a> FnOnce(&'a mut [f32], &'a mut [i64]) -> Result<Writer<'a>, Error>,
 ) -> Result<(), nf_status> {
     let needed = nf_table_size(items);
-    if needed == 0 {
-        return Err(NF_ERR_MEMORY);
-    }
+    ensure(needed > 0, NF_ERR_MEMORY)?;
     // SAFETY: passed on to the caller.
     let start = unsafe { convert::memory(memory, bytes, needed) }?;
     let fits = |blocks| parts(blocks).is_some_and(|(importance, sums)| importance + sums + SLACK <= bytes);

@@ -15,7 +15,7 @@ impl From<Wrong> for nf_status {
 
 /// What breaks a rule is out of range.
 pub(crate) fn rule(is_kept: bool, words: &'static CStr) -> Result<(), Wrong> {
-    if is_kept { Ok(()) } else { Err(Wrong(NF_ERR_RANGE, words)) }
+    ensure(is_kept, Wrong(NF_ERR_RANGE, words))
 }
 
 /// The choice that a number stands for.
@@ -26,5 +26,5 @@ pub(crate) fn pick<T: Copy>(value: u32, choices: &[T], words: &'static CStr) -> 
 /// A number from 0 to 1.
 pub(crate) fn part(value: f32, words: &'static CStr) -> Result<(), Wrong> {
     let status = if value.is_finite() { NF_ERR_RANGE } else { NF_ERR_NOT_FINITE };
-    if (0.0..=1.0).contains(&value) { Ok(()) } else { Err(Wrong(status, words)) }
+    ensure((0.0..=1.0).contains(&value), Wrong(status, words))
 }

@@ -1,6 +1,6 @@
 //! Handing out parts of one caller-supplied buffer.
 
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::lanes::{LANES, Lanes};
 use crate::matrix::{Triangle, packed_len};
 use crate::real::Real;
@@ -18,8 +18,8 @@ impl<'a, R: Real> Arena<'a, R> {
     /// # Errors
     /// [`Error::Memory`] if it has fewer.
     pub(crate) fn new(buffer: &'a mut [R], needed: Option<usize>) -> Result<Self, Error> {
-        let is_enough = needed.is_some_and(|needed| needed <= buffer.len());
-        if is_enough { Ok(Self { rest: buffer, counted: None }) } else { Err(Error::Memory) }
+        ensure(needed.is_some_and(|needed| needed <= buffer.len()), Error::Memory)?;
+        Ok(Self { rest: buffer, counted: None })
     }
 
     /// One that gives out nothing, and counts what it is asked for.

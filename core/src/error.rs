@@ -75,13 +75,16 @@ impl From<Error> for i32 {
     }
 }
 
+/// Refuses what is not so.
+#[inline]
+pub(crate) fn ensure<E>(is_so: bool, error: E) -> Result<(), E> {
+    if is_so { Ok(()) } else { Err(error) }
+}
+
 /// Whether an argument is a number from 0 to 1.
-#[allow(dead_code, reason = "each feature uses some of it")]
 pub(crate) fn check_part(value: f32) -> Result<(), Error> {
-    if !value.is_finite() {
-        return Err(Error::NotFinite);
-    }
-    if (0.0..=1.0).contains(&value) { Ok(()) } else { Err(Error::Range) }
+    ensure(value.is_finite(), Error::NotFinite)?;
+    ensure((0.0..=1.0).contains(&value), Error::Range)
 }
 
 impl fmt::Display for Error {

@@ -1,5 +1,9 @@
 #![no_std]
 #![forbid(unsafe_code)]
+#![cfg_attr(
+    not(all(feature = "control-variate", feature = "minibatch", feature = "sampler", feature = "tile")),
+    allow(dead_code, unused_imports, reason = "each feature uses some of what they share")
+)]
 //! noisefloor: less Monte Carlo noise for the samples a renderer or trainer already pays for.
 //!
 //! - [`control_variate`]: a pixel's own samples, fitted by functions with known integrals, give an estimate whose error
@@ -50,13 +54,10 @@ pub mod error;
 #[cfg(any(feature = "sampler", feature = "tile"))]
 mod hash;
 #[cfg(any(feature = "control-variate", feature = "mis"))]
-#[cfg_attr(not(feature = "control-variate"), allow(dead_code, reason = "the fits use the rest"))]
 mod lanes;
 #[cfg(any(feature = "control-variate", feature = "mis"))]
-#[cfg_attr(not(feature = "control-variate"), allow(dead_code, reason = "the fits use the rest"))]
 mod linalg;
 #[cfg(any(feature = "control-variate", feature = "mis"))]
-#[cfg_attr(not(feature = "control-variate"), allow(dead_code, unused_imports, reason = "the fits use the rest"))]
 mod matrix;
 #[cfg(feature = "minibatch")]
 pub mod minibatch;
@@ -71,7 +72,6 @@ pub mod real;
 #[cfg(feature = "control-variate")]
 pub mod recommend;
 pub mod rng;
-#[allow(dead_code, reason = "each feature uses some of them")]
 mod rows;
 #[cfg(feature = "sampler")]
 pub mod sampler;

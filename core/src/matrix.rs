@@ -6,7 +6,7 @@
 
 use crate::real::Real;
 pub(crate) use crate::rows::{
-    at, first, first_mut, from, from_mut, halves, halves_mut, part, part_mut, row_at, row_at_mut, rows, rows_mut,
+    at, first, first_mut, from, from_mut, halves, halves_mut, part, part_mut, row_at, row_at_mut, rows, rows_mut, set,
 };
 use core::ops::{Deref, DerefMut};
 
@@ -144,20 +144,6 @@ impl<T: 'static, S: DerefMut<Target = [T]>> Triangle<S> {
         let (before, rest) = self.entries.split_at_mut_checked(packed_len(j))?;
         let (left, diagonal) = split_at(rest, j)?;
         Some((Triangle { entries: before, order: j }, left, diagonal))
-    }
-}
-
-impl<'a, T> Panel<&'a mut [T]> {
-    /// Forgets all rows but the first `count`.
-    pub(crate) fn truncate(&mut self, count: usize) {
-        let entries = core::mem::take(&mut self.entries);
-        let len = entries.len().min(count * self.width);
-        self.entries = first_mut(entries, len);
-    }
-
-    /// The same, from now on only to be read.
-    pub(crate) fn into_shared(self) -> Panel<&'a [T]> {
-        Panel { entries: self.entries, width: self.width }
     }
 }
 

@@ -44,11 +44,6 @@ pub trait Real:
 
     /// Rounds to nearest.
     fn from_f64(value: f64) -> Self;
-    /// Exact.
-    #[inline]
-    fn from_f32(value: f32) -> Self {
-        value.into()
-    }
     /// Exact for `f32`, and up to 2^53 for `f64`.
     fn from_usize(value: usize) -> Self;
     /// Rounds to nearest; what is too large becomes infinite.

@@ -16,7 +16,7 @@
 
 use crate::basis::MAX_DIMS;
 use crate::control_variate::Config;
-use crate::error::Error;
+use crate::error::{Error, ensure};
 
 /// What a pixel's samples are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -86,12 +86,8 @@ pub fn recommend(
     can_share: bool,
     sample_cost: f32,
 ) -> Result<Recommendation, Error> {
-    if sample_cost.is_nan() {
-        return Err(Error::NotFinite);
-    }
-    if dims == 0 || samples_per_pixel == 0 || sample_cost <= 0.0 {
-        return Err(Error::Range);
-    }
+    ensure(!sample_cost.is_nan(), Error::NotFinite)?;
+    ensure(dims > 0 && samples_per_pixel > 0 && sample_cost > 0.0, Error::Range)?;
     let (error, filtered_error) = match sampling {
         Sampling::Independent => (1.0, 1.0),
         Sampling::Stratified => cell(&STRATIFIED_ALONE, dims, samples_per_pixel),

@@ -34,6 +34,13 @@ pub(crate) fn at<T: Copy + Default>(vector: &[T], j: usize) -> T {
     vector.get(j).copied().unwrap_or_default()
 }
 
+/// Writes one entry of a vector, if it is there.
+pub(crate) fn set<T>(vector: &mut [T], j: usize, value: T) {
+    if let Some(out) = vector.get_mut(j) {
+        *out = value;
+    }
+}
+
 /// `len` entries of a vector from entry `start` on.
 pub(crate) fn part<T>(vector: &[T], start: usize, len: usize) -> &[T] {
     vector.get(start..start + len).unwrap_or_default()

@@ -47,9 +47,8 @@ pub unsafe extern "C" fn nf_cv_estimate(
         let (config, given) = unsafe { (convert::reference(config)?, convert::reference(samples)?) };
         let core = core_config(config)?;
         is_narrow(config)?;
-        if integrals > 1 && (core.controls > 0 || core.non_finite == NonFinite::Skip) {
-            return Err(NF_ERR_UNSUPPORTED);
-        }
+        let is_plain = core.controls == 0 && core.non_finite == NonFinite::Error;
+        ensure(integrals <= 1 || is_plain, NF_ERR_UNSUPPORTED)?;
         if given.n > 0 && integrals == 0 {
             return Ok(check_core(&core)?);
         }

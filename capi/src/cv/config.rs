@@ -142,43 +142,25 @@ pub(super) fn check_core(config: &Config) -> Result<(), Wrong> {
 /// The core's configuration, precision apart, see [`is_narrow`]; no more is checked than the numbers that stand for a
 /// choice.
 pub(super) fn core_config(config: &nf_cv_config) -> Result<Config, Wrong> {
+    use Estimator::{GradientDescent, Incremental, KFold, LeastSquares, LeaveOneOut, Robust};
+    let estimators = [Robust, LeastSquares, LeaveOneOut, KFold, GradientDescent, Incremental];
+    let solvers = [Solver::Auto, Solver::NormalEquations, Solver::SquareRoot, Solver::Dual];
+    let non_finites = [NonFinite::Error, NonFinite::Skip];
+    let colors = [Color::PerChannel, Color::LuminanceRatio];
     Ok(Config {
         dims: config.dims as usize,
         order: config.order as usize,
         channels: config.channels as usize,
-        estimator: pick(
-            config.estimator,
-            &[
-                Estimator::Robust,
-                Estimator::LeastSquares,
-                Estimator::LeaveOneOut,
-                Estimator::KFold,
-                Estimator::GradientDescent,
-                Estimator::Incremental,
-            ],
-            c"estimator must be one of NF_CV_*, 0 to 5",
-        )?,
+        estimator: pick(config.estimator, &estimators, c"estimator must be one of NF_CV_*, 0 to 5")?,
         basis: pick(config.basis, &Family::ALL, c"basis must be one of NF_BASIS_*, 0 to 3")?,
         stratified: pick(config.stratified, &[false, true], c"stratified must be 0 or 1")?,
         slices: config.slices as usize,
         edges: config.edges as usize,
         controls: config.controls as usize,
         stride: config.stride as usize,
-        solver: pick(
-            config.solver,
-            &[Solver::Auto, Solver::NormalEquations, Solver::SquareRoot, Solver::Dual],
-            c"solver must be one of NF_SOLVER_*, 0 to 3",
-        )?,
-        non_finite: pick(
-            config.nonfinite,
-            &[NonFinite::Error, NonFinite::Skip],
-            c"nonfinite must be one of NF_NONFINITE_*, 0 or 1",
-        )?,
-        color: pick(
-            config.color,
-            &[Color::PerChannel, Color::LuminanceRatio],
-            c"color must be one of NF_COLOR_*, 0 or 1",
-        )?,
+        solver: pick(config.solver, &solvers, c"solver must be one of NF_SOLVER_*, 0 to 3")?,
+        non_finite: pick(config.nonfinite, &non_finites, c"nonfinite must be one of NF_NONFINITE_*, 0 or 1")?,
+        color: pick(config.color, &colors, c"color must be one of NF_COLOR_*, 0 or 1")?,
         folds: config.folds as usize,
         ridge: match config.ridge {
             0.0 => Ridge::Default,

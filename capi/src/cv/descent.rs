@@ -56,9 +56,7 @@ pub unsafe extern "C" fn nf_cv_gradient_descent(
         };
         let core = with(core_config(config)?, descent)?;
         is_narrow(config)?;
-        if core.estimator != Estimator::GradientDescent || core.controls > 0 {
-            return Err(NF_ERR_UNSUPPORTED);
-        }
+        ensure(core.estimator == Estimator::GradientDescent && core.controls == 0, NF_ERR_UNSUPPORTED)?;
         let columns = core.terms()? - 1;
         // SAFETY: the caller's arrays and workspace, of the lengths the header states.
         let (samples, coefficients, workspace) = unsafe {
@@ -80,12 +78,9 @@ pub(crate) fn check_descent(descent: &nf_cv_descent) -> Result<(), Wrong> {
 
 /// The core's configuration with that of a descent.
 fn with(config: Config, descent: &nf_cv_descent) -> Result<Config, Wrong> {
+    let optimizers = [Optimizer::Momentum, Optimizer::Adam, Optimizer::Plain];
     Ok(Config {
-        optimizer: pick(
-            descent.optimizer,
-            &[Optimizer::Momentum, Optimizer::Adam, Optimizer::Plain],
-            c"optimizer must be one of NF_OPTIMIZER_*, 0 to 2",
-        )?,
+        optimizer: pick(descent.optimizer, &optimizers, c"optimizer must be one of NF_OPTIMIZER_*, 0 to 2")?,
         iterations: descent.iterations as usize,
         learning_rate: descent.learning_rate,
         momentum: descent.momentum,

@@ -161,7 +161,8 @@ fn supported(config: &nf_cv_config) -> Result<Config, nf_status> {
     let core = core_config(config)?;
     // All is computed in float, but a wrong number is an error.
     is_narrow(config)?;
-    if core.controls > 0 { Err(NF_ERR_UNSUPPORTED) } else { Ok(core) }
+    ensure(core.controls == 0, NF_ERR_UNSUPPORTED)?;
+    Ok(core)
 }
 
 /// The image without its arrays; of `known` and `surfaces` only whether there are any, on which the workspace depends.

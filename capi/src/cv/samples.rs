@@ -40,16 +40,12 @@ pub(super) unsafe fn read<'a>(
     knows: bool,
 ) -> Result<Samples<'a>, nf_status> {
     let has_known = !samples.known.is_null() || !samples.known_integrals.is_null();
-    if has_known && !knows {
-        return Err(NF_ERR_UNSUPPORTED);
-    }
+    ensure(knows || !has_known, NF_ERR_UNSUPPORTED)?;
     // What a configuration out of range says about lengths means nothing; these fields are all that matters here.
     let in_range = config.dims <= 16 && config.channels <= 4 && config.controls <= 4;
-    if !in_range || (config.stride != 0 && config.stride < config.dims) {
-        return Err(NF_ERR_RANGE);
-    }
+    ensure(in_range && config.step() >= config.dims, NF_ERR_RANGE)?;
     let rows = convert::product(samples.n, integrals)?;
-    let Some(last) = rows.checked_sub(1) else { return Err(NF_ERR_NO_SAMPLES) };
+    let last = rows.checked_sub(1).ok_or(NF_ERR_NO_SAMPLES)?;
     let u_len = convert::product(last, config.step())?.checked_add(config.dims).ok_or(NF_ERR_RANGE)?;
     // SAFETY: the caller's promise, see above.
     unsafe {

@@ -3,6 +3,7 @@
 use super::shape::{MAX_DIMS, MAX_TERMS};
 use crate::lanes::Lanes;
 use crate::real::Real;
+use crate::rows::set;
 use heapless::Vec;
 
 /// The centring and scaling of exp(-|x - c|^2 / (2 sigma^2)).
@@ -76,9 +77,8 @@ impl Gaussians {
             }
             let mean = R::from_f64(component.mean);
             let scale = R::from_f64(component.scale);
-            if let Some(column) = out.get_mut(if index < continuous { index } else { index + gap }) {
-                *column = squares.map(|square| scale * ((exponent * square).exp() - mean));
-            }
+            let values = squares.map(|square| scale * ((exponent * square).exp() - mean));
+            set(out, if index < continuous { index } else { index + gap }, values);
         }
     }
 }

@@ -26,7 +26,7 @@ pub use shape::{MAX_DIMS, MAX_ORDER, MAX_TERMS};
 
 use crate::error::Error;
 use crate::lanes::Lanes;
-use crate::matrix::{at, halves_mut, rows_mut};
+use crate::matrix::{at, halves_mut, rows_mut, set};
 use crate::real::Real;
 use gaussian::Gaussians;
 use heapless::Vec;
@@ -142,9 +142,7 @@ impl Basis {
                 }
                 for term in &self.terms {
                     let value = term.value(self.family, &arguments, out);
-                    if let Some(column) = out.get_mut(term.column()) {
-                        *column = value;
-                    }
+                    set(out, term.column(), value);
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! How many functions a basis has.
 
-use crate::error::Error;
+use crate::error::{Error, ensure};
 
 /// The largest number of coordinates.
 pub const MAX_DIMS: usize = 16;
@@ -31,15 +31,12 @@ impl Shape {
     /// # Errors
     /// As for [`Basis::new`](super::Basis::new).
     pub(crate) fn new(dims: usize, order: usize, slices: usize, room: usize) -> Result<Self, Error> {
-        if dims == 0 || dims > MAX_DIMS || order > MAX_ORDER || slices >= MAX_TERMS {
-            return Err(Error::Range);
-        }
+        let in_range = (1..=MAX_DIMS).contains(&dims) && order <= MAX_ORDER && slices < MAX_TERMS;
+        ensure(in_range, Error::Range)?;
         let slices = if slices > 1 && order > 0 { slices } else { 0 };
         let continuous = if slices > 0 { dims - 1 } else { dims };
         let shared = count(continuous, order);
-        if 1 + shared + slices > room {
-            return Err(Error::Range);
-        }
+        ensure(1 + shared + slices <= room, Error::Range)?;
         // As many whole degrees of per-slice copies as fit.
         let fits = |&copies: &usize| 1 + shared + slices + slices * copies <= room;
         let degrees = 0..=if slices > 0 { order } else { 0 };

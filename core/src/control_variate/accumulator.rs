@@ -14,7 +14,7 @@ use super::samples::{Reader, Samples, Subset};
 use super::sums::{Change, Form, Layout};
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::lanes::Lanes;
 use crate::real::Real;
 use crate::rows::{first_mut, from, from_mut, halves_mut};
@@ -48,9 +48,9 @@ pub struct Accumulator<R> {
     method: Method,
     layout: Layout,
     samples: u64,
-    units: [Units<R>; Config::MAX_CHANNELS],
+    units: Units<R>,
     /// Sums of red, green, blue and luminance, for a luminance ratio.
-    colour: [f64; 4],
+    colour: PerChannel<f64>,
     incremental: incremental::Progress<R>,
 }
 
@@ -77,8 +77,8 @@ impl<R: Real> Accumulator<R> {
             method,
             layout,
             samples: 0,
-            units: [Units::default(); Config::MAX_CHANNELS],
-            colour: [0.0; 4],
+            units: Units::default(),
+            colour: PerChannel::default(),
             incremental: incremental::Progress::default(),
         })
     }
@@ -146,7 +146,7 @@ impl<R: Real> Accumulator<R> {
     /// Sums of a narrow type stop growing when they are too large for one more sample to show.
     fn check_capacity(&self, more: u64) -> Result<(), Error> {
         let total = self.samples.saturating_add(more);
-        if R::NARROW && total > NARROW_CAPACITY as u64 { Err(Error::Range) } else { Ok(()) }
+        ensure(!R::NARROW || total <= NARROW_CAPACITY as u64, Error::Range)
     }
 
     /// Forgets all samples.
@@ -181,11 +181,9 @@ impl<R: Real> Accumulator<R> {
             sample.put(0, &mut x, &mut h);
             reader.columns(&basis, &x, &h, from_mut(first_mut(&mut p, terms), 1));
             if let Some(colour) = reader.colour(sample) {
-                for (sum, value) in self.colour.iter_mut().zip(colour) {
-                    *sum += value;
-                }
+                self.colour += colour;
             }
-            self.add_row(sums, first_mut(&mut p, terms), PerChannel(reader.values(sample)));
+            self.add_row(sums, first_mut(&mut p, terms), reader.values(sample));
             self.move_zero(self.samples - 1, sums);
         });
         Ok(())
@@ -193,11 +191,15 @@ impl<R: Real> Accumulator<R> {
 
     /// Adds one evaluated sample.
     fn add_row(&mut self, sums: &mut [R], p: &mut [Lanes<R, 1>], values: PerChannel<R>) {
-        self.fit_units(&values, sums);
-        let mut f = PerChannel::default();
-        for ((f, &value), unit) in f.iter_mut().zip(values.iter()).zip(&self.units) {
-            *f = value * R::ONE.scale(-unit.exponent) - unit.offset;
+        // Values of a narrow type stay near one.
+        if R::NARROW {
+            self.raise_exponents(values.map(|value| if value == R::ZERO { -126 } else { value.exponent() }), sums);
         }
+        let scaled = values * self.units.scales();
+        if self.samples == 0 {
+            self.units.offsets = scaled;
+        }
+        let mut f = scaled - self.units.offsets;
         let (p, f) = (p.as_flattened_mut(), first_mut(&mut *f, self.layout.channels));
         let (groups, rest) = halves_mut(sums, self.sums_len());
         if self.method == Method::Incremental {
@@ -221,9 +223,7 @@ impl<R: Real> Accumulator<R> {
     /// # Errors
     /// [`Error::Mismatch`] if the configurations differ; in `f32` [`Error::Range`] for more than 2^22 samples together.
     pub fn merge(&mut self, sums: &mut [R], other: &Self, other_sums: &[R]) -> Result<(), Error> {
-        if self.config != other.config {
-            return Err(Error::Mismatch);
-        }
+        ensure(self.config == other.config, Error::Mismatch)?;
         let (sums, other_sums) = (self.used_mut(sums)?, other.used(other_sums)?);
         if other.samples == 0 {
             return Ok(());
@@ -232,13 +232,9 @@ impl<R: Real> Accumulator<R> {
         if self.samples == 0 {
             self.units = other.units;
         }
-        self.raise_exponents(&other.units.map(|unit| unit.exponent), sums);
-        let mut change = Change::none();
-        for (channel, (theirs, ours)) in other.units.iter().zip(&self.units).enumerate() {
-            let factor = R::ONE.scale(theirs.exponent - ours.exponent);
-            change.factors[channel] = factor;
-            change.shift[channel] = theirs.offset * factor - ours.offset;
-        }
+        self.raise_exponents(other.units.exponents, sums);
+        let factors = other.units.exponents.zip(self.units.exponents, |theirs, ours| R::ONE.scale(theirs - ours));
+        let change = Change { factors, shift: other.units.offsets * factors - self.units.offsets };
         let (layout, groups) = (self.layout, self.groups());
         let size = |sums: &[R], fold| layout.group(sums, fold).count().to_f64();
         let rotation = folds::rotation(groups, |fold| size(sums, fold), |fold| size(other_sums, fold));
@@ -246,16 +242,13 @@ impl<R: Real> Accumulator<R> {
             let theirs = layout.group(other_sums, (fold + groups.get() - rotation) % groups);
             layout.group_mut(sums, fold).merge(&theirs, &change);
         }
-        for (sum, value) in self.colour.iter_mut().zip(other.colour) {
-            *sum += value;
-        }
+        self.colour += other.colour;
         self.incremental.merge(&other.incremental, &change, other.samples);
         let before = self.samples;
         self.samples = self.samples.saturating_add(other.samples);
         self.move_zero(before, sums);
         if self.method == Method::Incremental {
             let (groups, rest) = halves_mut(sums, self.sums_len());
-            self.incremental.refit_now();
             self.incremental.refit(self.samples, &self.config, self.shape, layout, groups, rest);
         }
         Ok(())
@@ -268,9 +261,7 @@ impl<R: Real> Accumulator<R> {
     /// [`Accumulator::workspace_len`] says.
     pub fn estimate(&self, sums: &[R], workspace: &mut [R]) -> Result<Estimate, Error> {
         let sums = self.used(sums)?;
-        if self.samples == 0 {
-            return Err(Error::NoSamples);
-        }
+        ensure(self.samples > 0, Error::NoSamples)?;
         let (summary, arena) = (self.summary(sums), &mut Arena::new(workspace, Some(self.needed()))?);
         // From an estimate in the sums' units.
         let correcting = |of: Outcome<R>| Outcome { correction: of.correction - summary.mean, ..of };
@@ -333,10 +324,7 @@ impl<R: Real> Accumulator<R> {
     #[inline(never)]
     fn move_zero_to_mean(&mut self, sums: &mut [R]) {
         let units = self.summary(sums).units;
-        let mut change = Change::none();
-        for ((shift, before), after) in change.shift.iter_mut().zip(&self.units).zip(&units) {
-            *shift = before.offset - after.offset;
-        }
+        let change = Change { shift: self.units.offsets - units.offsets, ..Change::none() };
         self.units = units;
         self.change(sums, &change);
     }
@@ -346,8 +334,7 @@ impl<R: Real> Accumulator<R> {
         let groups = (0..self.groups().get()).map(|fold| self.layout.group(sums, fold));
         let mut summary = Summary::of_sums(groups, self.samples, self.layout.channels, self.units);
         if self.config.color == Color::LuminanceRatio {
-            let inverse = 1.0 / self.samples as f64;
-            summary.colour = Some(self.colour.map(|sum| sum * inverse));
+            summary.colour = Some(self.colour * (1.0 / self.samples as f64));
         }
         summary
     }
@@ -359,36 +346,17 @@ impl<R: Real> Accumulator<R> {
         self.incremental.change(change, self.samples, from_mut(sums, self.sums_len()), self.layout);
     }
 
-    /// Sets the units at the first sample, and keeps values of a narrow type near one.
-    fn fit_units(&mut self, values: &PerChannel<R>, sums: &mut [R]) {
-        if R::NARROW {
-            self.raise_exponents(&values.map(|value| if value == R::ZERO { -126 } else { value.exponent() }), sums);
-        }
-        if self.samples == 0 {
-            for (unit, &value) in self.units.iter_mut().zip(values.iter()) {
-                unit.offset = value * R::ONE.scale(-unit.exponent);
-            }
-        }
-    }
-
     /// Raises the units' exponents to at least those given, and rescales what was summed.
-    fn raise_exponents(&mut self, exponents: &[i32; Config::MAX_CHANNELS], sums: &mut [R]) {
-        let mut change = Change::none();
-        let mut any = false;
-        for ((unit, &exponent), factor) in self.units.iter_mut().zip(exponents).zip(change.factors.iter_mut()) {
-            let exponent = exponent.clamp(-126, 126);
-            if self.samples == 0 && R::NARROW {
-                // Of nothing yet there is nothing to rescale.
-                unit.exponent = exponent;
-            } else if exponent > unit.exponent {
-                *factor = R::ONE.scale((unit.exponent - exponent).max(-149));
-                unit.offset *= *factor;
-                unit.exponent = exponent;
-                any = true;
-            }
-        }
-        if any {
-            self.change(sums, &change);
+    fn raise_exponents(&mut self, exponents: PerChannel<i32>, sums: &mut [R]) {
+        let (before, given) = (self.units.exponents, exponents.map(|exponent| exponent.clamp(-126, 126)));
+        if self.samples == 0 && R::NARROW {
+            // Of nothing yet there is nothing to rescale.
+            self.units.exponents = given;
+        } else if before.iter().zip(&*given).any(|(before, given)| before < given) {
+            self.units.exponents = before.zip(given, i32::max);
+            let factors = before.zip(self.units.exponents, |before, now| R::ONE.scale((before - now).max(-149)));
+            self.units.offsets = self.units.offsets * factors;
+            self.change(sums, &Change { factors, ..Change::none() });
         }
     }
 }

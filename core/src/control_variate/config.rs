@@ -1,7 +1,7 @@
 //! What an estimate is made with.
 
 use crate::basis::{Family, MAX_DIMS, MAX_ORDER, MAX_TERMS, Shape};
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use core::ffi::CStr;
 use core::num::NonZeroUsize;
 
@@ -84,7 +84,8 @@ pub enum Ridge {
     /// The strength with the smallest leave-one-out error of a few, which biases leave-one-out; the default where there
     /// are no such errors.
     Auto,
-    /// Penalty per sample on a first-degree coefficient; positive and finite, raised to 1e-12 or in `f32` to 1e-5.
+    /// Penalty per sample on a first-degree coefficient, times the number of first-degree functions; positive and
+    /// finite, raised to 1e-12 or in `f32` to 1e-5.
     Fixed(f32),
 }
 
@@ -188,7 +189,7 @@ impl Config {
     }
 
     fn keeps_rules(&self) -> Result<Shape, (Error, &'static CStr)> {
-        let rule = |is_kept: bool, words: &'static CStr| if is_kept { Ok(()) } else { Err((Error::Range, words)) };
+        let rule = |is_kept, words: &'static CStr| ensure(is_kept, (Error::Range, words));
         rule((1..=MAX_DIMS).contains(&self.dims), c"dims must be 1 to 16")?;
         rule(self.order <= MAX_ORDER, c"order must be 0 to 7")?;
         rule((1..=Self::MAX_CHANNELS).contains(&self.channels), c"channels must be 1 to 4")?;
@@ -207,9 +208,8 @@ impl Config {
         let is_rate = (0.0..f32::INFINITY).contains(&self.learning_rate);
         rule(is_rate, c"learning_rate must be finite and at least 0")?;
         rule((0.0..1.0).contains(&self.momentum), c"momentum must be at least 0 and below 1")?;
-        if self.color == Color::LuminanceRatio && self.channels != 3 {
-            return Err((Error::Unsupported, c"color must not be the luminance ratio but for 3 channels"));
-        }
+        let color = (Error::Unsupported, c"color must not be the luminance ratio but for 3 channels");
+        ensure(self.color == Color::PerChannel || self.channels == 3, color)?;
         let terms = c"dims, order, slices and controls make more than 136 terms: lower one of them";
         Shape::new(self.dims, self.order, self.slices, MAX_TERMS - self.controls).map_err(|error| (error, terms))
     }

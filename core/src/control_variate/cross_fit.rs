@@ -16,7 +16,7 @@ use super::sums::{self, Layout, Sums};
 use super::trust::{Centre, Judge, Mixture};
 use crate::arena::Arena;
 use crate::basis::Basis;
-use crate::matrix::{at, first, rows, rows_mut};
+use crate::matrix::{at, first, rows, rows_mut, set};
 use crate::real::Real;
 
 /// The number of candidates besides the plain mean.
@@ -172,9 +172,7 @@ pub(crate) fn nested<R: Real>(groups: &Groups<'_, R>, mean: PerChannel<R>, arena
             for (b, weights) in rows(coefficients, each).zip(&kept) {
                 mixed += weights[index / columns.max(1)] * at(b, index);
             }
-            if let Some(out) = coefficients.get_mut(index) {
-                *out = mixed;
-            }
+            set(coefficients, index, mixed);
         }
         let b = first(coefficients, each);
         sums += held_out.residual_totals(b);

@@ -6,7 +6,7 @@ use super::samples::{Reader, Subset};
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::lanes::{self, LANES, Lanes};
-use crate::matrix::{Panel, Triangle, first_mut, from};
+use crate::matrix::{Panel, Triangle, first_mut, from, rows_mut};
 use crate::real::{Real, rounding};
 use core::ops::Deref;
 
@@ -25,40 +25,46 @@ pub(crate) struct Design<'a, R> {
     /// What was subtracted from each column: its sample mean.
     pub(crate) column_means: &'a [R],
     /// How stored values map to the caller's.
-    pub(crate) units: [Units<R>; Config::MAX_CHANNELS],
+    pub(crate) units: Units<R>,
 }
 
-/// value = offset + 2^exponent * stored
+/// value = 2^exponent (offset + stored)
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Units<R> {
-    pub(crate) offset: R,
-    pub(crate) exponent: i32,
+    pub(crate) offsets: PerChannel<R>,
+    pub(crate) exponents: PerChannel<i32>,
 }
 
 impl<R: Real> Units<R> {
-    /// The caller's value for a stored one.
-    pub(crate) fn value(&self, stored: R) -> f64 {
-        libm::scalbn(self.offset.to_f64() + stored.to_f64(), self.exponent)
+    /// 2^-exponent
+    pub(crate) fn scales(&self) -> PerChannel<R> {
+        self.exponents.map(|exponent| R::ONE.scale(-exponent))
+    }
+
+    /// The caller's value for a channel's stored one.
+    pub(crate) fn value(&self, channel: usize, stored: R) -> f64 {
+        libm::scalbn(self.offsets[channel].to_f64() + stored.to_f64(), self.exponents[channel])
     }
 
     /// The caller's length for a stored one.
-    pub(crate) fn length(&self, stored: R) -> f64 {
-        libm::scalbn(stored.to_f64(), self.exponent)
+    pub(crate) fn length(&self, channel: usize, stored: R) -> f64 {
+        libm::scalbn(stored.to_f64(), self.exponents[channel])
     }
 
     /// The stored length for a caller's.
-    pub(crate) fn stored_length(&self, value: f32) -> R {
-        R::from_f64(libm::scalbn(f64::from(value), -self.exponent))
+    pub(crate) fn stored_length(&self, channel: usize, value: f32) -> R {
+        R::from_f64(libm::scalbn(f64::from(value), -self.exponents[channel]))
     }
 
     /// A length stored in other units, in these.
-    pub(crate) fn converted(&self, length: R, other: &Self) -> R {
-        if self.exponent == other.exponent { length } else { length.scale(other.exponent - self.exponent) }
+    pub(crate) fn converted(&self, channel: usize, length: R, other: &Self) -> R {
+        let by = other.exponents[channel] - self.exponents[channel];
+        if by == 0 { length } else { length.scale(by) }
     }
 
     /// A value stored in other units, in these.
-    pub(crate) fn relative(&self, stored: R, other: &Self) -> R {
-        self.converted(other.offset + stored, other) - self.offset
+    pub(crate) fn relative(&self, channel: usize, stored: R, other: &Self) -> R {
+        self.converted(channel, other.offsets[channel] + stored, other) - self.offsets[channel]
     }
 }
 
@@ -83,17 +89,16 @@ impl<'a, R: Real> Design<'a, R> {
     ) -> Option<Self> {
         let channels = reader.channels();
         let count = reader.count(subset).div_ceil(LANES);
-        let mut panels = Panel::new(arena.take_lanes(count * columns), columns);
-        let mut values = Panel::new(arena.take_lanes(count * channels), channels);
+        let (all_columns, all_values) = (arena.take_lanes(count * columns), arena.take_lanes(count * channels));
         let column_means = arena.zeros(columns);
         let mut units = units(reader, subset);
-        let factors = units.map(|unit| R::ONE.scale(-unit.exponent));
+        let scales = units.scales();
         let mut x = [[R::ZERO; LANES]; MAX_DIMS];
         let mut h = [[R::ZERO; LANES]; Config::MAX_CONTROLS];
         let mut f = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
         let (mut next, mut n) = (0, 0);
-        let mut column_panels = panels.rows_mut();
-        for values in values.rows_mut() {
+        let mut column_panels = rows_mut(all_columns, columns);
+        for values in rows_mut(all_values, channels) {
             // Lanes that are not filled hold an earlier panel's samples, in range; they are cleared below.
             let filled = reader.panel(subset, &mut next, &mut x, &mut h, &mut f);
             if filled == 0 {
@@ -103,16 +108,18 @@ impl<'a, R: Real> Design<'a, R> {
             if let Some(panel) = column_panels.next() {
                 reader.columns(basis, &x, &h, panel);
             }
-            for (((out, f), &factor), unit) in values.iter_mut().zip(&f).zip(&factors).zip(&units) {
-                *out = f.map(|f| f * factor - unit.offset);
+            for (((out, f), &scale), &offset) in values.iter_mut().zip(&f).zip(&*scales).zip(&*units.offsets) {
+                *out = f.map(|f| f * scale - offset);
             }
         }
         drop(column_panels);
         if n == 0 {
             return None;
         }
-        panels.truncate(n.div_ceil(LANES));
-        values.truncate(n.div_ceil(LANES));
+        let used = n.div_ceil(LANES);
+        let (all_columns, all_values) =
+            (first_mut(all_columns, used * columns), first_mut(all_values, used * channels));
+        let (mut panels, mut values) = (Panel::new(&mut *all_columns, columns), Panel::new(&mut *all_values, channels));
         clear_unused(&mut panels, n);
         clear_unused(&mut values, n);
         if centre {
@@ -122,12 +129,10 @@ impl<'a, R: Real> Design<'a, R> {
             for _ in 0..1 + usize::from(R::NARROW) {
                 let mut means = PerChannel::default();
                 self::centre(&mut values, n, first_mut(&mut *means, channels));
-                for (unit, &mean) in units.iter_mut().zip(means.iter()) {
-                    unit.offset += mean;
-                }
+                units.offsets += means;
             }
         }
-        let (panels, values) = (panels.into_shared(), values.into_shared());
+        let (panels, values) = (Panel::new(&*all_columns, columns), Panel::new(&*all_values, channels));
         Some(Self { n, columns, channels, panels, values, column_means, units })
     }
 
@@ -216,7 +221,7 @@ fn centre<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means: &mut [R
 /// the values.
 fn clear_constant<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means: &[R], integrals: &[f32]) {
     for (j, (&mean, &integral)) in means.iter().zip(integrals).enumerate() {
-        let noise = rounding::<R>() * (mean.abs() + R::from_f32(integral).abs());
+        let noise = rounding::<R>() * (mean.abs() + R::from(integral).abs());
         if (square(panels, j) / R::from_usize(n)).sqrt() <= noise {
             for column in panels.column_mut(j) {
                 *column = [R::ZERO; LANES];
@@ -249,23 +254,18 @@ fn clear_unused<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize) {
 
 /// Where the stored values' zero and unit lie: at the first sample, so that constants are exact, and, for a type whose
 /// range squares could leave, at a power of two near the largest value.
-pub(crate) fn units<R: Real>(reader: &Reader<'_>, subset: Subset) -> [Units<R>; Config::MAX_CHANNELS] {
-    let mut units = [Units::default(); Config::MAX_CHANNELS];
+fn units<R: Real>(reader: &Reader<'_>, subset: Subset) -> Units<R> {
+    let mut units = Units::default();
     if R::NARROW {
-        let mut largest = [R::ZERO; Config::MAX_CHANNELS];
+        let mut largest = PerChannel::<R>::default();
         reader.each(subset, |sample| {
-            for (largest, value) in largest.iter_mut().zip(reader.values::<R>(sample)) {
-                *largest = largest.max(value.abs());
-            }
+            largest = largest.zip(reader.values::<R>(sample), |largest, value| largest.max(value.abs()));
         });
-        for (unit, largest) in units.iter_mut().zip(largest) {
-            unit.exponent = if largest > R::ZERO { largest.exponent().clamp(-126, 126) } else { 0 };
-        }
+        let exponent = |largest: R| if largest > R::ZERO { largest.exponent().clamp(-126, 126) } else { 0 };
+        units.exponents = largest.map(exponent);
     }
     if let Some(sample) = reader.first(subset) {
-        for (unit, value) in units.iter_mut().zip(reader.values::<R>(&sample)) {
-            unit.offset = value * R::ONE.scale(-unit.exponent);
-        }
+        units.offsets = reader.values(&sample) * units.scales();
     }
     units
 }

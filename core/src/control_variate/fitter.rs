@@ -20,7 +20,7 @@ use core::array;
 pub(crate) struct Blend<R> {
     fits: [Fit<R>; MAX_FITS],
     mixture: Mixture<R, MAX_FITS>,
-    /// Samples that they are to, and [`plain_press`] of these.
+    /// Samples that they are to, and the sum of squared leave-one-out residuals of their plain mean.
     n: R,
     plain: PerChannel<R>,
     /// Whether residuals tell the error: as many terms as samples leave least squares none.
@@ -89,7 +89,10 @@ pub(crate) fn fit<'a, R: Real>(
             System::Dual(dual) => dual.fit(design, penalty, leave_one_out, kept, arena.scratch()),
         };
     }
-    let (n, plain) = (R::from_usize(design.n), plain_press(design));
+    let n = R::from_usize(design.n);
+    // f_i minus the mean of the others is n / (n - 1) times f_i minus the mean.
+    let factor = if design.n > 1 { n / (n - R::ONE) } else { R::ZERO };
+    let plain = design.squares() * factor * factor;
     let mixture = if is_mixed {
         mix(n, plain, plan.method, &fits, strengths.len())
     } else {
@@ -171,13 +174,4 @@ impl<R: Real> Blend<R> {
             sum + weights * Centre::new(fit.eccentricity, fit.freedom, self.n).inflation
         })
     }
-}
-
-/// The sum of squared leave-one-out residuals of the plain mean.
-#[inline]
-fn plain_press<R: Real>(design: &Design<'_, R>) -> PerChannel<R> {
-    let n = R::from_usize(design.n);
-    // f_i minus the mean of the others is n / (n - 1) times f_i minus the mean.
-    let factor = if design.n > 1 { n / (n - R::ONE) } else { R::ZERO };
-    design.squares() * factor * factor
 }

@@ -129,7 +129,8 @@ impl<R: Real> Progress<R> {
         self.next_fit = samples.saturating_add((samples / 16).max(1));
     }
 
-    /// Adds another estimate's corrected values, of `samples` values that were changed since.
+    /// Adds another estimate's corrected values, of `samples` values that were changed since. The next fits are then
+    /// due at once.
     pub(crate) fn merge(&mut self, other: &Self, change: &Change<R>, samples: u64) {
         let n = R::from_f64(samples as f64);
         self.total += change.totals(other.total, n);
@@ -139,6 +140,7 @@ impl<R: Real> Progress<R> {
             *ours += change.squares(theirs, PerChannel::default(), R::ZERO);
         }
         self.predictions += other.predictions;
+        self.next_fit = 0;
     }
 
     /// Changes the values of `samples` samples, and with them the coefficients in front of `rest`.
@@ -157,11 +159,6 @@ impl<R: Real> Progress<R> {
                 coefficients.iter_mut().for_each(|value| *value *= factor);
             }
         }
-    }
-
-    /// Makes the next fits due at once.
-    pub(crate) fn refit_now(&mut self) {
-        self.next_fit = 0;
     }
 }
 

@@ -55,19 +55,17 @@ pub(crate) fn estimate<R: Real>(
             let blend = fitter::fit(&train, config, basis, &plan, Some(coefficients), &mut arena);
             inflation = blend.inflation();
             // Everything meets in the units of all samples, which are the largest.
-            let units = train.units.iter().zip(&whole.units);
-            for (coefficients, (from, to)) in rows_mut(coefficients, whole.columns).zip(units) {
-                coefficients.iter_mut().for_each(|value| *value = to.converted(*value, from));
+            for (channel, row) in rows_mut(coefficients, whole.columns).enumerate() {
+                row.iter_mut().for_each(|value| *value = whole.units.converted(channel, *value, &train.units));
             }
         }
         inflations += inflation * R::from_usize(held_out.n);
         for (panel_index, (panel, values)) in held_out.each_panel().enumerate() {
             let used = held_out.n.saturating_sub(panel_index * LANES);
-            let units = held_out.units.iter().zip(&whole.units);
-            let each = values.iter().zip(rows(coefficients, whole.columns)).zip(units).enumerate();
-            for (channel, ((values, coefficients), (from, to))) in each {
+            let each = values.iter().zip(rows(coefficients, whole.columns)).enumerate();
+            for (channel, (values, coefficients)) in each {
                 // Relative to the whole design's mean.
-                let mut residuals = values.map(|value| to.relative(value, from));
+                let mut residuals = values.map(|value| whole.units.relative(channel, value, &held_out.units));
                 // f - b'p, where the columns' integrals are zero.
                 for (column, &b) in panel.iter().zip(coefficients) {
                     residuals = lanes::minus_product(residuals, [b; LANES], *column);

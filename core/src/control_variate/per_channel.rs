@@ -4,14 +4,20 @@
 use super::config::Config;
 use crate::matrix::copy;
 use crate::real::Real;
+use core::array;
 use core::ops::{Add, AddAssign, Deref, DerefMut, Index, IndexMut, Mul, Sub};
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PerChannel<R>(pub(crate) [R; Config::MAX_CHANNELS]);
 
-impl<R> PerChannel<R> {
+impl<R: Copy> PerChannel<R> {
     pub(crate) fn map<T>(self, f: impl FnMut(R) -> T) -> PerChannel<T> {
         PerChannel(self.0.map(f))
+    }
+
+    /// What `f` makes of two numbers of each channel.
+    pub(crate) fn zip<S: Copy, T>(self, other: PerChannel<S>, f: impl Fn(R, S) -> T) -> PerChannel<T> {
+        PerChannel(array::from_fn(|channel| f(self[channel], other[channel])))
     }
 }
 
@@ -35,14 +41,6 @@ impl<R: Real> PerChannel<R> {
         let mut all = Self::default();
         copy(&mut *all, row);
         all
-    }
-
-    /// What `f` makes of two numbers of each channel.
-    pub(crate) fn zip(mut self, other: Self, f: impl Fn(R, R) -> R) -> Self {
-        for (a, b) in self.iter_mut().zip(other.0) {
-            *a = f(*a, b);
-        }
-        self
     }
 }
 

@@ -12,7 +12,7 @@
 //! | `Incremental` | as a stream | `incremental` | yes | the corrected values' spread |
 
 use super::config::{Config, Estimator, Ridge, Solver};
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::lanes::LANES;
 use crate::real::Real;
 
@@ -76,7 +76,7 @@ pub(crate) fn check_stream(config: &Config) -> Result<(), Error> {
         Estimator::LeastSquares => config.ridge == Ridge::Auto,
         _ => config.solver == Solver::SquareRoot,
     };
-    if needs_samples || config.solver == Solver::Dual { Err(Error::Unsupported) } else { Ok(()) }
+    ensure(!needs_samples && config.solver != Solver::Dual, Error::Unsupported)
 }
 
 /// The most samples whose fits go through their n x n system.
@@ -115,9 +115,7 @@ impl Plan {
             _ => {}
         }
         let most = if method.streams() { NARROW_CAPACITY } else { LANES * NARROW_CAPACITY };
-        if u32::try_from(n).is_err() || (R::NARROW && n > most) {
-            return Err(Error::Range);
-        }
+        ensure(u32::try_from(n).is_ok() && (!R::NARROW || n <= most), Error::Range)?;
         let dual = n <= most_dual(config, columns);
         Ok(Self { method, columns: if method == Method::Plain { 0 } else { columns }, dual })
     }

@@ -3,12 +3,13 @@
 use super::config::{Config, Estimate};
 use super::design::Units;
 use super::fit::{Penalty, normal};
+use super::per_channel::PerChannel;
 use super::result::Summary;
 use super::samples::Sample;
 use super::sums::{Change, Form, Sums};
 use crate::arena::Arena;
 use crate::basis::{Basis, Family};
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::matrix::{Panel, Triangle, first_mut, from_mut};
 use core::iter;
 
@@ -33,7 +34,7 @@ use core::iter;
 pub struct Regressor<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> {
     basis: Basis,
     samples: u64,
-    offset: [f32; CHANNELS],
+    offset: PerChannel<f64>,
     /// Lower triangles of the sums of products (4.28), packed into the first rows.
     gram: [[f64; TERMS]; TERMS],
     /// Sums of products with the values (4.27).
@@ -48,13 +49,11 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     /// [`Error::Range`] if `DIMS`, `order` and `TERMS` do not belong together or `CHANNELS` is not 1 to 4.
     pub fn new(family: Family, order: usize) -> Result<Self, Error> {
         let basis = Basis::new(family, DIMS, order, 0)?;
-        if basis.columns() + 1 != TERMS || CHANNELS == 0 || CHANNELS > Config::MAX_CHANNELS {
-            return Err(Error::Range);
-        }
+        ensure(basis.columns() + 1 == TERMS && (1..=Config::MAX_CHANNELS).contains(&CHANNELS), Error::Range)?;
         Ok(Self {
             basis,
             samples: 0,
-            offset: [0.0; CHANNELS],
+            offset: PerChannel::default(),
             gram: [[0.0; TERMS]; TERMS],
             rhs: [[0.0; CHANNELS]; TERMS],
             square: [0.0; CHANNELS],
@@ -68,15 +67,15 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     #[inline]
     pub fn add(&mut self, u: &[f32; DIMS], f: &[f32; CHANNELS]) -> Result<(), Error> {
         Sample::new(u, f).check()?;
-        if self.samples == 0 {
-            self.offset = *f;
-        }
         let x = u.map(|u| [f64::from(u)]);
         let mut p = [[1.0]; TERMS];
         self.basis.evaluate(&x, from_mut(&mut p, 1));
         let mut values = f.map(f64::from);
-        for (value, &offset) in values.iter_mut().zip(&self.offset) {
-            *value -= f64::from(offset);
+        if self.samples == 0 {
+            self.offset = PerChannel::from_row(&values);
+        }
+        for (value, &offset) in values.iter_mut().zip(&*self.offset) {
+            *value -= offset;
         }
         self.sums_mut().add(p.as_flattened_mut(), &mut values);
         self.samples += 1;
@@ -94,16 +93,9 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     /// [`Error::NoSamples`], or [`Error::Range`] for a strength that is not positive and finite.
     #[inline]
     pub fn estimate(&self, strength: f32) -> Result<Estimate, Error> {
-        if self.samples == 0 {
-            return Err(Error::NoSamples);
-        }
-        if !(strength > 0.0 && strength.is_finite()) {
-            return Err(Error::Range);
-        }
-        let mut units = [Units::default(); Config::MAX_CHANNELS];
-        for (unit, offset) in units.iter_mut().zip(self.offset) {
-            unit.offset = f64::from(offset);
-        }
+        ensure(self.samples > 0, Error::NoSamples)?;
+        ensure(strength > 0.0 && strength.is_finite(), Error::Range)?;
+        let units = Units { offsets: self.offset, ..Units::default() };
         let summary = Summary::of_sums(iter::once(self.sums()), self.samples, CHANNELS, units);
         let mut penalties = [0.0; TERMS];
         let penalties = first_mut(&mut penalties, self.basis.columns());
@@ -121,16 +113,11 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     /// # Errors
     /// [`Error::Mismatch`] if the bases differ.
     pub fn merge(&mut self, other: &Self) -> Result<(), Error> {
-        if !self.basis.is_same(&other.basis) {
-            return Err(Error::Mismatch);
-        }
+        ensure(self.basis.is_same(&other.basis), Error::Mismatch)?;
         if self.samples == 0 {
             self.offset = other.offset;
         }
-        let mut change = Change::none();
-        for (shift, (theirs, ours)) in change.shift.iter_mut().zip(other.offset.iter().zip(&self.offset)) {
-            *shift = f64::from(*theirs) - f64::from(*ours);
-        }
+        let change = Change { shift: other.offset - self.offset, ..Change::none() };
         self.sums_mut().merge(&other.sums(), &change);
         self.samples = self.samples.saturating_add(other.samples);
         Ok(())

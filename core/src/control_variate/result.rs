@@ -1,6 +1,6 @@
 //! From a correction in a design's units to an [`Estimate`] in the caller's.
 
-use super::config::{Config, Estimate};
+use super::config::Estimate;
 use super::design::{Design, Units};
 use super::per_channel::PerChannel;
 use super::samples::Reader;
@@ -59,13 +59,13 @@ pub(crate) struct Summary<R> {
     samples: u64,
     channels: usize,
     /// Units whose zero is the plain mean.
-    pub(crate) units: [Units<R>; Config::MAX_CHANNELS],
+    pub(crate) units: Units<R>,
     /// The plain mean in the units that sums are in; of a design, whose units are those above, zero.
     pub(crate) mean: PerChannel<R>,
     /// The plain mean's variance, None for one sample.
     pub(crate) variance: Option<PerChannel<R>>,
     /// For a luminance ratio: the mean colour and its luminance.
-    pub(crate) colour: Option<[f64; 4]>,
+    pub(crate) colour: Option<PerChannel<f64>>,
 }
 
 impl<R: Real> Summary<R> {
@@ -86,7 +86,7 @@ impl<R: Real> Summary<R> {
         groups: impl Iterator<Item = Sums<&'a [R]>>,
         samples: u64,
         channels: usize,
-        mut units: [Units<R>; Config::MAX_CHANNELS],
+        mut units: Units<R>,
     ) -> Self {
         let (mut totals, mut squares) = (PerChannel::default(), PerChannel::default());
         for group in groups {
@@ -95,9 +95,7 @@ impl<R: Real> Summary<R> {
         }
         let n = R::from_f64(samples as f64);
         let mean = totals.map(|total| total / n);
-        for (unit, &mean) in units.iter_mut().zip(mean.iter()) {
-            unit.offset += mean;
-        }
+        units.offsets += mean;
         let variance = sums::spread(squares, totals, mean).map(|spread| spread / mean_divisor(n));
         Self { samples, channels, units, mean, variance: (samples > 1).then_some(variance), colour: None }
     }
@@ -110,17 +108,17 @@ impl<R: Real> Summary<R> {
         let (mut mean, mut error) = (PerChannel::<f64>::default(), PerChannel::<f64>::default());
         let (mut gain, mut counted) = (0.0, 0.0);
         let variance = outcome.variance.or(self.variance);
-        for (channel, unit) in self.units.iter().enumerate().take(self.channels) {
+        for channel in 0..self.channels {
             let correction = outcome.correction[channel];
             let is_usable = correction.is_finite();
-            mean[channel] = unit.value(if is_usable { correction } else { R::ZERO });
+            mean[channel] = self.units.value(channel, if is_usable { correction } else { R::ZERO });
             error[channel] = f64::INFINITY;
             if let (Some(variance), Some(plain)) = (&variance, &self.variance) {
                 let (variance, plain) = (variance[channel], plain[channel]);
                 // Of what is no number all that is known is the mean's; and a constant is no fit's to get wrong.
                 let is_known = is_usable && (variance < R::INFINITY || plain > R::ZERO && variance == R::INFINITY);
                 let variance = if is_known { variance.max(R::ZERO) } else { plain };
-                error[channel] = unit.length(variance.sqrt());
+                error[channel] = self.units.length(channel, variance.sqrt());
                 if plain > R::ZERO {
                     // Behind a black box, so that no compiler divides by zero ahead of the decision.
                     gain += (variance / black_box(plain)).to_f64();
@@ -128,7 +126,7 @@ impl<R: Real> Summary<R> {
                 }
             }
         }
-        if let Some([red, green, blue, luminance]) = self.colour {
+        if let Some(PerChannel([red, green, blue, luminance])) = self.colour {
             // (4.3): the colour of the plain mean, with the regressed luminance.
             let (regressed, deviation) = (mean[0], error[0]);
             let is_zero = luminance == 0.0;

@@ -2,8 +2,9 @@
 
 use super::config::{Color, Config, NonFinite};
 use super::folds::Fold;
+use super::per_channel::PerChannel;
 use crate::basis::{Basis, MAX_DIMS};
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::lanes::{LANES, Lanes};
 use crate::real::Real;
 use crate::rows::{first, from, halves_mut, row_at};
@@ -85,9 +86,7 @@ impl<'a> Reader<'a> {
     /// [`Error::Range`] if the arrays' lengths do not belong together, [`Error::NoSamples`] if they are empty.
     pub(crate) fn new(config: &Config, samples: Samples<'a>) -> Result<Self, Error> {
         let n = samples.f.len().checked_div(config.channels).unwrap_or(0);
-        if n == 0 && samples.f.is_empty() {
-            return Err(Error::NoSamples);
-        }
+        ensure(n > 0 || !samples.f.is_empty(), Error::NoSamples)?;
         let stride = config.step();
         // The last row may end early: all but one need a whole stride.
         let needed = (n.max(1) - 1).checked_mul(stride).and_then(|len| len.checked_add(config.dims));
@@ -96,12 +95,8 @@ impl<'a> Reader<'a> {
             && samples.u.len() <= n.saturating_mul(stride)
             && samples.controls.len() == n.saturating_mul(config.controls)
             && samples.control_integrals.len() == config.controls;
-        if !lengths_fit || u32::try_from(n).is_err() {
-            return Err(Error::Range);
-        }
-        if !samples.control_integrals.iter().all(|value| value.is_finite()) {
-            return Err(Error::NotFinite);
-        }
+        ensure(lengths_fit && u32::try_from(n).is_ok(), Error::Range)?;
+        ensure(samples.control_integrals.iter().all(|value| value.is_finite()), Error::NotFinite)?;
         Ok(Self {
             samples,
             n,
@@ -221,7 +216,7 @@ impl<'a> Reader<'a> {
             if self.is_used(index, subset) {
                 let sample = self.get(index);
                 sample.put(lane, x, h);
-                for (f, value) in f.iter_mut().zip(self.values::<R>(&sample)) {
+                for (f, value) in f.iter_mut().zip(self.values::<R>(&sample).0) {
                     f[lane % LANES] = value;
                 }
                 lane += 1;
@@ -236,13 +231,13 @@ impl<'a> Reader<'a> {
     }
 
     /// The values of a sample that are regressed: its channels, or its luminance.
-    pub(crate) fn values<R: Real>(&self, sample: &Sample<'_>) -> [R; Config::MAX_CHANNELS] {
-        let mut values = [R::ZERO; Config::MAX_CHANNELS];
+    pub(crate) fn values<R: Real>(&self, sample: &Sample<'_>) -> PerChannel<R> {
+        let mut values = PerChannel::default();
         if self.luminance {
-            values[0] = R::from_f32(luminance(sample.f));
+            values[0] = R::from(luminance(sample.f));
         } else {
             for (value, &f) in values.iter_mut().zip(sample.f) {
-                *value = R::from_f32(f);
+                *value = R::from(f);
             }
         }
         values
@@ -263,27 +258,22 @@ impl<'a> Reader<'a> {
             if let (2, 2, 4, Some(next)) = (self.dims, self.stride, count, rows.first_chunk::<8>()) {
                 for (step, &[a, b]) in next.as_chunks().0.iter().enumerate() {
                     let lane = lane + step * LANES + own;
-                    [x[0][lane % L], x[1][lane % L]] = [a, b].map(R::from_f32);
+                    [x[0][lane % L], x[1][lane % L]] = [a, b].map(R::from);
                 }
                 continue;
             }
             for step in 0..count {
                 let lane = lane + step * LANES + own;
                 match (self.dims, rows) {
-                    (2, &[a, b, ..]) => [x[0][lane % L], x[1][lane % L]] = [a, b].map(R::from_f32),
+                    (2, &[a, b, ..]) => [x[0][lane % L], x[1][lane % L]] = [a, b].map(R::from),
                     (3, &[a, b, c, ..]) => {
-                        [x[0][lane % L], x[1][lane % L], x[2][lane % L]] = [a, b, c].map(R::from_f32);
+                        [x[0][lane % L], x[1][lane % L], x[2][lane % L]] = [a, b, c].map(R::from);
                     }
-                    _ => x.iter_mut().zip(rows).take(self.dims).for_each(|(x, &u)| x[lane % L] = R::from_f32(u)),
+                    _ => x.iter_mut().zip(rows).take(self.dims).for_each(|(x, &u)| x[lane % L] = R::from(u)),
                 }
                 rows = from(rows, self.stride);
             }
         }
-    }
-
-    /// All values, as they were given.
-    pub(crate) fn inputs(&self) -> &'a [f32] {
-        self.samples.f
     }
 
     /// Evaluates control functions and basis at `L` positions; `x` has a group of lanes for each coordinate, `h` one
@@ -298,30 +288,26 @@ impl<'a> Reader<'a> {
     ) {
         let (controls, functions) = halves_mut(out, self.controls);
         for ((out, h), &integral) in controls.iter_mut().zip(h).zip(self.samples.control_integrals) {
-            *out = h.map(|h| h - R::from_f32(integral));
+            *out = h.map(|h| h - R::from(integral));
         }
         basis.evaluate(x, functions);
     }
 
     /// For a luminance-ratio estimate, a sample's colour and its luminance.
-    pub(crate) fn colour(&self, sample: &Sample<'_>) -> Option<[f64; 4]> {
+    pub(crate) fn colour(&self, sample: &Sample<'_>) -> Option<PerChannel<f64>> {
         match (self.luminance, sample.f) {
-            (true, &[red, green, blue]) => Some([red, green, blue, luminance(sample.f)].map(f64::from)),
+            (true, &[red, green, blue]) => Some(PerChannel([red, green, blue, luminance(sample.f)].map(f64::from))),
             _ => None,
         }
     }
 
     /// For a luminance-ratio estimate, the mean colour of the used samples and its luminance.
-    pub(crate) fn mean_colour(&self) -> Option<[f64; 4]> {
+    pub(crate) fn mean_colour(&self) -> Option<PerChannel<f64>> {
         if !self.luminance {
             return None;
         }
-        let mut sums = [0.0; 4];
-        let used = self.each(Subset::All, |sample| {
-            for (sum, value) in sums.iter_mut().zip(self.colour(sample).into_iter().flatten()) {
-                *sum += value;
-            }
-        });
+        let mut sums = PerChannel::default();
+        let used = self.each(Subset::All, |sample| sums += self.colour(sample).unwrap_or_default());
         Some(sums.map(|sum| sum / used.max(1) as f64))
     }
 }
@@ -339,10 +325,8 @@ impl<'a> Sample<'a> {
     /// # Errors
     /// [`Error::NotFinite`], or [`Error::Range`] for a position outside [0, 1].
     pub(crate) fn check(&self) -> Result<(), Error> {
-        if !self.is_finite() {
-            return Err(Error::NotFinite);
-        }
-        if self.u.iter().all(|u| (0.0..=1.0).contains(u)) { Ok(()) } else { Err(Error::Range) }
+        ensure(self.is_finite(), Error::NotFinite)?;
+        ensure(self.u.iter().all(|u| (0.0..=1.0).contains(u)), Error::Range)
     }
 
     /// Writes the position and the control functions to lane `lane`.
@@ -353,10 +337,10 @@ impl<'a> Sample<'a> {
         h: &mut [Lanes<R, L>; Config::MAX_CONTROLS],
     ) {
         for (x, &u) in x.iter_mut().zip(self.u) {
-            x[lane % L] = R::from_f32(u);
+            x[lane % L] = R::from(u);
         }
         for (h, &value) in h.iter_mut().zip(self.h) {
-            h[lane % L] = R::from_f32(value);
+            h[lane % L] = R::from(value);
         }
     }
 }
@@ -372,7 +356,7 @@ fn transpose<R: Real>(rows: &[f32], stride: usize, width: usize, out: &mut [Lane
             for lane in 0..LANES {
                 let row = from(rows, lane * stride);
                 for (out, &value) in out.iter_mut().zip(row).take(width) {
-                    out[lane] = R::from_f32(value);
+                    out[lane] = R::from(value);
                 }
             }
         }
@@ -386,7 +370,7 @@ fn transpose_exact<R: Real, const WIDTH: usize>(rows: &[f32], stride: usize, out
     for lane in 0..LANES {
         if let Some(row) = rows.get(lane * stride..).and_then(<[f32]>::first_chunk::<WIDTH>) {
             for (column, &value) in columns.iter_mut().zip(row) {
-                column[lane] = R::from_f32(value);
+                column[lane] = R::from(value);
             }
         }
     }

@@ -4,7 +4,6 @@
 //! [`Form::Products`]. Of badly placed samples they lose digits that [`Form::Factor`] keeps: in the same places stand
 //! R' for P = Q R, Q'f, and what of f'f is left.
 
-use super::config::Config;
 use super::per_channel::PerChannel;
 use crate::basis::MAX_TERMS;
 use crate::linalg::givens;
@@ -223,7 +222,7 @@ pub(crate) struct Change<R> {
 impl<R: Real> Change<R> {
     /// None.
     pub(crate) fn none() -> Self {
-        Self { factors: PerChannel([R::ONE; Config::MAX_CHANNELS]), shift: PerChannel::default() }
+        Self { factors: PerChannel::all(R::ONE), shift: PerChannel::default() }
     }
 
     /// Sums of `n` values.

@@ -7,7 +7,7 @@
 //! - where the samples' centre lies ([`Centre`]): far from the cube's, a fit extrapolates;
 //! - how far the fit moves the mean ([`surprise`]): a fit that explains the values moves it by about its error, one
 //!   that follows noise by more;
-//! - how few samples there are ([`prior`]).
+//! - how few samples there are ([`Judge::informed`]).
 
 use super::per_channel::PerChannel;
 use crate::matrix::{at, first_mut};
@@ -45,9 +45,9 @@ const DOUBT: f64 = 6.0;
 /// Where the centre of the samples lies as a fit to them measures distance, from the cube's.
 ///
 /// For q = n sum_i (m'A^-1 p_i)^2, with m the columns' means and p_i the centred columns, and k =
-/// `freedom` effective coefficients, Hotelling's F = (q / k) (n - 1 - k) tells: it is about 1 for independent samples.
-/// If all lie in one part of the cube, errors on held-out samples are small and yet the fit's integral is an
-/// extrapolation: F is large. If they were placed to be even it is small.
+/// `freedom` effective coefficients, F = (q / k) (n - 1 - k) tells: Hotelling's, but for its n - k, and about 1 for
+/// independent samples. If all lie in one part of the cube, errors on held-out samples are small and yet the fit's
+/// integral is an extrapolation: F is large. If they were placed to be even it is small.
 #[derive(Clone, Copy)]
 pub(crate) struct Centre<R> {
     f: R,
@@ -126,12 +126,6 @@ fn surprise<R: Real>(correction: R, variance: R) -> R {
     R::from_f64(SURPRISE) * errors * errors
 }
 
-/// The trust in the mean of `n` samples where fits were discounted.
-fn prior<R: Real>(n: R) -> R {
-    let square = n * n;
-    R::from_f64(INFORMED_PRIOR) * (R::ONE + R::from_f64(FEW) / (square * square))
-}
-
 /// How errors on samples that a fit has not seen become trust.
 #[derive(Clone, Copy)]
 pub(crate) struct Judge<R> {
@@ -146,7 +140,9 @@ pub(crate) struct Judge<R> {
 impl<R: Real> Judge<R> {
     /// Where fits are discounted for where their samples lie and how far they move the mean.
     pub(crate) fn informed(n: R) -> Self {
-        Self { n, power: n * R::from_f64(SHARPNESS), prior: prior(n) }
+        let square = n * n;
+        let prior = R::from_f64(INFORMED_PRIOR) * (R::ONE + R::from_f64(FEW) / (square * square));
+        Self { n, power: n * R::from_f64(SHARPNESS), prior }
     }
 
     /// The weights of the plain mean and of the first `used` fits, from their errors and what else tells against a fit.

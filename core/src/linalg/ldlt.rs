@@ -9,7 +9,7 @@ use core::ops::{Deref, DerefMut};
 ///
 /// 1 / d_j is 0 for a column that depends on the columns before it, so that its pivot is rounding noise: the solution
 /// then does not use it.
-pub(crate) struct Ldlt<S>(Triangle<S>);
+pub(crate) struct Ldlt<S>(pub(crate) Triangle<S>);
 
 impl<R: Real, S: DerefMut<Target = [R]>> Ldlt<S> {
     /// Factors a matrix in place.
@@ -36,12 +36,6 @@ impl<R: Real, S: DerefMut<Target = [R]>> Ldlt<S> {
 }
 
 impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
-    /// Takes up what [`Ldlt::new`] has factored.
-    #[cfg(feature = "mis")]
-    pub(crate) fn factored(matrix: Triangle<S>) -> Self {
-        Self(matrix)
-    }
-
     /// 1 / d_j.
     pub(crate) fn inverse_pivot(&self, j: usize) -> R {
         self.0.diagonal(j)

@@ -1,6 +1,6 @@
 //! A minibatch drawn from several importance distributions.
 
-use crate::Error;
+use crate::error::{Error, ensure};
 use crate::mis::MAX_TECHNIQUES;
 use crate::mis::linear::Vector;
 
@@ -41,29 +41,18 @@ impl<'a> Batch<'a> {
     /// Errors: [`Error::Range`] for arguments outside these ranges or a wrong length; [`Error::NoSamples`] for an empty
     /// batch; [`Error::NotFinite`] for a probability that is NaN or infinite.
     pub fn new(items: u32, techniques: usize, pdf: &'a [f32], technique: &'a [u32]) -> Result<Batch<'a>, Error> {
-        if !(1..=MAX_TECHNIQUES).contains(&techniques) || items == 0 {
-            return Err(Error::Range);
-        }
-        if technique.is_empty() {
-            return Err(Error::NoSamples);
-        }
-        if technique.len().checked_mul(techniques) != Some(pdf.len()) {
-            return Err(Error::Range);
-        }
-        if !pdf.iter().all(|p| p.is_finite()) {
-            return Err(Error::NotFinite);
-        }
+        ensure((1..=MAX_TECHNIQUES).contains(&techniques) && items > 0, Error::Range)?;
+        ensure(!technique.is_empty(), Error::NoSamples)?;
+        ensure(technique.len().checked_mul(techniques) == Some(pdf.len()), Error::Range)?;
+        ensure(pdf.iter().all(|p| p.is_finite()), Error::NotFinite)?;
         let mut counts = Vector::default();
         for (&own, p) in technique.iter().zip(pdf.chunks_exact(techniques)) {
             let drawn = p.get(own as usize).is_some_and(|&p| p > 0.0);
-            let Some(count) = counts.get_mut(own as usize).filter(|_| drawn) else { return Err(Error::Range) };
-            *count += 1.0;
+            *counts.get_mut(own as usize).filter(|_| drawn).ok_or(Error::Range)? += 1.0;
         }
         let most = counts.map(|count| if count > 0.0 { LARGEST } else { f32::MAX });
-        let rows = pdf.chunks_exact(techniques);
-        if !rows.flat_map(|p| p.iter().zip(&most)).all(|(p, most)| (0.0..=*most).contains(p)) {
-            return Err(Error::Range);
-        }
+        let mut each = pdf.chunks_exact(techniques).flat_map(|p| p.iter().zip(&most));
+        ensure(each.all(|(p, most)| (0.0..=*most).contains(p)), Error::Range)?;
         Ok(Batch { items: items.into(), techniques, counts, pdf, technique })
     }
 

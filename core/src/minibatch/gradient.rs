@@ -3,7 +3,7 @@
 use super::Batch;
 use super::batch::Sample;
 use super::system::System;
-use crate::Error;
+use crate::error::{Error, ensure};
 use crate::mis::linear::Vector;
 use crate::mis::{MAX_TECHNIQUES, Solver};
 use crate::real::saturate;
@@ -115,9 +115,8 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
         estimate: &mut [f32],
     ) -> Result<(), Error> {
         let parameters = self.parameters;
-        if estimate.len() != parameters || batch.len().checked_mul(parameters) != Some(gradient.len()) {
-            return Err(Error::Range);
-        }
+        ensure(estimate.len() == parameters, Error::Range)?;
+        ensure(batch.len().checked_mul(parameters) == Some(gradient.len()), Error::Range)?;
         let mut system = self.system;
         let (keep, part) = system.add(batch, beta)?;
         let correction = system.correction(solver)?;
@@ -165,16 +164,14 @@ fn check(batch: &Batch<'_>, gradient: &[f32], parameters: usize) -> Result<(), E
         // Bits of positive floats are in the order of their values, NaN behind infinity.
         let largest = row.iter().fold(0, |largest, g| largest.max((g.to_bits() & 0x7fff_ffff) as i32));
         let largest = f32::from_bits(largest as u32);
-        if !largest.is_finite() {
-            return Err(Error::NotFinite);
-        }
+        ensure(largest.is_finite(), Error::NotFinite)?;
         // The largest coefficient: p_j / S is at most 1.
         let coefficient = sample.balance / batch.items;
         overflow |= coefficient > f64::from(f32::MAX);
         bound += coefficient * f64::from(largest);
     }
     // A quarter leaves room for rounding.
-    if overflow || bound > 0.25 * f64::from(f32::MAX) { Err(Error::Range) } else { Ok(()) }
+    ensure(!overflow && bound <= 0.25 * f64::from(f32::MAX), Error::Range)
 }
 
 /// What the gradients of a group of samples are multiplied by, for the balance estimate and each b: four samples at a

@@ -4,7 +4,7 @@
 //! pass. Everything is in `f64` inside: finite inputs of any size give finite results, one beyond the range of `f32`
 //! becoming the largest finite `f32`. Wrong input is an error, but for [`squared_error`], of which it is NaN.
 
-use crate::Error;
+use crate::error::{Error, ensure};
 use crate::mis::MAX_TECHNIQUES;
 use crate::real::{Real, saturate};
 
@@ -42,9 +42,7 @@ impl<'a> Softmax<'a> {
         let own = f64::from(*logits.get(label).ok_or(Error::Range)?);
         let (mut at, mut largest) = (0, f32::NEG_INFINITY);
         for (k, &z) in logits.iter().enumerate() {
-            if !z.is_finite() {
-                return Err(Error::NotFinite);
-            }
+            ensure(z.is_finite(), Error::NotFinite)?;
             if z > largest {
                 (at, largest) = (k, z);
             }
@@ -122,16 +120,10 @@ pub enum Split {
 pub fn nodes(gradient: &[f32], split: Split, importance: &mut [f32]) -> Result<(), Error> {
     let techniques = importance.len();
     let signs = if split == Split::Sign { 2 } else { 1 };
-    if !(1..=MAX_TECHNIQUES).contains(&techniques) || !techniques.is_multiple_of(signs) {
-        return Err(Error::Range);
-    }
+    ensure((1..=MAX_TECHNIQUES).contains(&techniques) && techniques.is_multiple_of(signs), Error::Range)?;
     let groups = (techniques / signs).max(1);
-    if gradient.len() < groups {
-        return Err(Error::Range);
-    }
-    if !gradient.iter().all(|g| g.is_finite()) {
-        return Err(Error::NotFinite);
-    }
+    ensure(gradient.len() >= groups, Error::Range)?;
+    ensure(gradient.iter().all(|g| g.is_finite()), Error::NotFinite)?;
     importance.chunks_mut(signs).enumerate().for_each(|(group, out)| {
         let mut squares = [0.0_f64; 2];
         for g in gradient.iter().skip(group).step_by(groups).map(|&g| f64::from(g)) {

@@ -13,7 +13,7 @@
 //! the counts, so that its sum of alpha is that of N^-1 A^-1 b: too small by n_j.
 
 use super::Batch;
-use crate::error::{Error, check_part};
+use crate::error::{Error, check_part, ensure};
 use crate::matrix::{first, packed_len};
 use crate::mis::linear::{self, Cells, Vector};
 use crate::mis::{MAX_TECHNIQUES, Solver};
@@ -51,9 +51,7 @@ impl System {
     /// the old averages and the batch have in the new ones, which sum to 1.
     pub(super) fn add(&mut self, batch: &Batch<'_>, beta: f32) -> Result<(f64, f64), Error> {
         check_part(beta)?;
-        if batch.techniques() != self.techniques {
-            return Err(Error::Range);
-        }
+        ensure(batch.techniques() == self.techniques, Error::Range)?;
         let earlier = (f64::from(beta) * self.weight).min(MOST - 1.0);
         self.weight = earlier + 1.0;
         let (keep, part) = (earlier / self.weight, 1.0 / self.weight);
@@ -76,9 +74,7 @@ impl System {
     /// A technique that never drew has a row of zeros there, and gets a c of 0.
     pub(super) fn correction(&self, solver: Solver) -> Result<Vector, Error> {
         solver.check()?;
-        if solver == Solver::Progressive {
-            return Err(Error::Unsupported);
-        }
+        ensure(solver != Solver::Progressive, Error::Unsupported)?;
         let samples = self.weight * self.counts.iter().sum::<f64>();
         let scale = self.counts.map(libm::sqrt);
         let system = linear::System::new(solver, &self.cells, 1.0, scale, self.techniques, samples);

@@ -2,7 +2,7 @@
 
 use super::Batch;
 use super::system::System;
-use crate::Error;
+use crate::error::{Error, ensure};
 use crate::mis::Solver;
 use crate::real::saturate;
 
@@ -14,11 +14,11 @@ use crate::real::saturate;
 ///
 /// `v_s = 1 / S_s - (q - 1)' (A + L)^-1 p_s / S_s^2`
 ///
-/// and L the ridge of [`Solver::Ridge`], or the pseudo-inverse without one ([`Solver::Plain`]: then v_s is also
-/// 1' A^+ p_s / S_s^2), or only the first term ([`Solver::Balance`]). The balance weights are positive and unbiased.
-/// The others are consistent, not unbiased, as A comes from the samples it is applied to; they may be negative. A
-/// gradient that is a linear combination of the p_j at every item is estimated exactly by [`Solver::Plain`], from any
-/// batch that tells them apart (A is not singular).
+/// and L the ridge of [`Solver::Ridge`], or the pseudo-inverse G = N^1/2 (N^1/2 A N^1/2)^+ N^1/2 without one, N having
+/// the counts ([`Solver::Plain`]: then v_s is also 1' G p_s / S_s^2), or only the first term ([`Solver::Balance`]). The
+/// balance weights are positive and unbiased. The others are consistent, not unbiased, as A comes from the samples it is
+/// applied to; they may be negative. A gradient that is a linear combination of the p_j at every item is estimated
+/// exactly by [`Solver::Plain`], from any batch that tells them apart (A is not singular).
 ///
 /// `weight` has one element per sample; one beyond the range of `f32` becomes the largest finite one.
 ///
@@ -37,9 +37,7 @@ use crate::real::saturate;
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
 pub fn weights(batch: &Batch<'_>, solver: Solver, weight: &mut [f32]) -> Result<(), Error> {
-    if weight.len() != batch.len() {
-        return Err(Error::Range);
-    }
+    ensure(weight.len() == batch.len(), Error::Range)?;
     let mut system = System::new(batch.techniques());
     system.add(batch, 0.0)?;
     let correction = system.correction(solver)?;

@@ -1,7 +1,7 @@
 //! The balance, power, cutoff and maximum heuristics (2.12-2.14).
 
 use super::linear::MAX_TECHNIQUES;
-use crate::error::{Error, check_part};
+use crate::error::{Error, check_part, ensure};
 use crate::real::Real;
 use crate::rows::at;
 
@@ -38,12 +38,8 @@ pub fn balance(pdf: &[f32], counts: &[u32], technique: usize) -> Result<f32, Err
 /// infinity the maximum heuristic. (2.13) prints the exponent outside the sum of its denominator; those weights would
 /// not sum to one, and these are Veach's. Other arguments and errors as for [`balance`].
 pub fn power(pdf: &[f32], counts: &[u32], technique: usize, beta: f32) -> Result<f32, Error> {
-    if !beta.is_finite() {
-        return Err(Error::NotFinite);
-    }
-    if beta <= 0.0 {
-        return Err(Error::Range);
-    }
+    ensure(beta.is_finite(), Error::NotFinite)?;
+    ensure(beta > 0.0, Error::Range)?;
     let shares = Shares::new(pdf, counts, technique)?;
     let raised = |share: f64| match beta {
         2.0 => share * share,
@@ -90,15 +86,10 @@ struct Shares {
 impl Shares {
     fn new(pdf: &[f32], counts: &[u32], technique: usize) -> Result<Shares, Error> {
         let techniques = pdf.len();
-        if !(1..=MAX_TECHNIQUES).contains(&techniques) || counts.len() != techniques || technique >= techniques {
-            return Err(Error::Range);
-        }
-        if pdf.iter().any(|p| p.is_nan()) {
-            return Err(Error::NotFinite);
-        }
-        if pdf.iter().any(|&p| p < 0.0) {
-            return Err(Error::Range);
-        }
+        let one_length = (1..=MAX_TECHNIQUES).contains(&techniques) && counts.len() == techniques;
+        ensure(one_length && technique < techniques, Error::Range)?;
+        ensure(!pdf.iter().any(|p| p.is_nan()), Error::NotFinite)?;
+        ensure(pdf.iter().all(|&p| p >= 0.0), Error::Range)?;
         let delta = pdf.iter().zip(counts).any(|(&p, &n)| n > 0 && p == f32::INFINITY);
         let mut share = [0.0; MAX_TECHNIQUES];
         let mut largest = 0.0_f64;

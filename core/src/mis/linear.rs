@@ -37,7 +37,7 @@ pub(crate) struct System {
 enum Factor {
     /// x is 0.
     Zero,
-    /// M = L D L'.
+    /// M = L D L', factored.
     Definite(Cells),
     /// M = V D V', the rows of V', and 1 / D.
     Spectral(Matrix, Vector),
@@ -79,7 +79,7 @@ impl System {
         match &self.factor {
             Factor::Zero => return Vector::default(),
             Factor::Definite(cells) => {
-                Ldlt::factored(Triangle::new(&cells[..], self.n)).solve(first_mut(&mut x, self.n));
+                Ldlt(Triangle::new(&cells[..], self.n)).solve(first_mut(&mut x, self.n));
             }
             Factor::Spectral(vectors, inverse) => {
                 let b = core::mem::take(&mut x);

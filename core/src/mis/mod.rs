@@ -10,14 +10,12 @@
 
 mod heuristics;
 pub(crate) mod linear;
-mod memory;
 pub(crate) mod optimal;
 mod solver;
 mod weight;
 
 pub use heuristics::{DEFAULT_BETA, balance, cutoff, maximum, power};
 pub use linear::MAX_TECHNIQUES;
-pub use memory::len;
-pub use optimal::OptimalMis;
+pub use optimal::{OptimalMis, len};
 pub use solver::{DEFAULT_RIDGE, RIDGE_RANGE, Solver};
 pub use weight::optimal_contribution;

@@ -11,13 +11,38 @@
 //! `F = sum_s f / S / R - (sum_s p / S / R - 1)' alpha`,
 //!
 //! the balance estimate less what the samples got wrong about the densities' integrals, each of which is 1.
+//!
+//! The sums lie in a memory of f64 as
+//!
+//! `samples | ratio[J] | matrix[J (J + 1) / 2] | P times balance, progressive, moment[J] | P times alpha[J]`
+//!
+//! All before the alphas are sums over the samples: they decay and are merged as they lie there.
 
 use super::linear::{self, MAX_TECHNIQUES, System, Vector};
-use super::memory::{Sums, len, record_len, sums_len};
 use super::solver::Solver;
-use crate::error::{Error, check_part};
-use crate::matrix::{copy, first, first_mut, rows, rows_mut};
+use crate::error::{Error, check_part, ensure};
+use crate::matrix::{at, copy, first, first_mut, packed_len, rows, rows_mut};
 use crate::real::saturate;
+
+/// The f64 that [`OptimalMis`] needs; 0 if `techniques` is not in 1..=16, `integrals` is 0, or no memory could hold
+/// them.
+pub const fn len(techniques: usize, integrals: usize) -> usize {
+    if techniques == 0 || techniques > MAX_TECHNIQUES || integrals == 0 {
+        return 0;
+    }
+    let Some(of_integrals) = integrals.checked_mul(record_len(techniques) + techniques) else { return 0 };
+    let Some(len) = of_integrals.checked_add(sums_len(techniques, 0)) else { return 0 };
+    if len <= isize::MAX as usize / size_of::<f64>() { len } else { 0 }
+}
+
+/// How much of a memory that is long enough are sums.
+const fn sums_len(techniques: usize, integrals: usize) -> usize {
+    1 + techniques + packed_len(techniques) + integrals * record_len(techniques)
+}
+
+const fn record_len(techniques: usize) -> usize {
+    2 + techniques
+}
 
 /// Sums from which the integrals of several functions are estimated with optimal MIS weights.
 ///
@@ -52,12 +77,8 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     /// Errors: as for [`OptimalMis::new`].
     pub fn resume(memory: M, counts: &[u32], integrals: usize) -> Result<Self, Error> {
         let needed = len(counts.len(), integrals);
-        if needed == 0 || counts.contains(&0) {
-            return Err(Error::Range);
-        }
-        if memory.as_ref().len() < needed {
-            return Err(Error::Memory);
-        }
+        ensure(needed > 0 && !counts.contains(&0), Error::Range)?;
+        ensure(memory.as_ref().len() >= needed, Error::Memory)?;
         let mut all = [0; MAX_TECHNIQUES];
         copy(&mut all, counts);
         Ok(OptimalMis { counts: all, techniques: counts.len(), integrals, memory })
@@ -81,9 +102,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     /// Errors: [`Error::Range`] for a wrong length or a ridge outside [`RIDGE_RANGE`](super::RIDGE_RANGE);
     /// [`Error::NotFinite`] for a ridge that is NaN or infinite; [`Error::NoSamples`].
     pub fn solve(&self, solver: Solver, estimate: &mut [f32]) -> Result<(), Error> {
-        if estimate.len() != self.integrals {
-            return Err(Error::Range);
-        }
+        ensure(estimate.len() == self.integrals, Error::Range)?;
         let (sums, rounds) = self.sums()?;
         let system = self.system(solver)?;
         for (out, record) in estimate.iter_mut().zip(rows(sums.records, record_len(self.techniques))) {
@@ -107,9 +126,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     /// Used on samples other than the ones it came from, it gives unbiased estimates. [`Solver::Progressive`] stands
     /// for the alpha that the current batch uses, [`Solver::Balance`] for zeros. Errors as for [`OptimalMis::solve`].
     pub fn alpha(&self, solver: Solver, alpha: &mut [f32]) -> Result<(), Error> {
-        if self.integrals.checked_mul(self.techniques) != Some(alpha.len()) {
-            return Err(Error::Range);
-        }
+        ensure(self.integrals.checked_mul(self.techniques) == Some(alpha.len()), Error::Range)?;
         let (sums, _) = self.sums()?;
         let system = self.system(solver)?;
         let records = rows(sums.records, record_len(self.techniques)).zip(rows(sums.alphas, self.techniques));
@@ -126,7 +143,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         solver.check()?;
         let (sums, rounds) = self.sums()?;
         let scale = self.counts.map(|count| libm::sqrt(f64::from(count)));
-        Ok(System::new(solver, sums.matrix, rounds, scale, self.techniques, sums.samples))
+        Ok(System::new(solver, sums.matrix, rounds, scale, self.techniques, at(sums.samples, 0)))
     }
 
     fn sum_counts(&self) -> f64 {
@@ -134,10 +151,11 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     }
 
     /// The sums and the number of rounds R, which is positive.
-    fn sums(&self) -> Result<(Sums<f64, &[f64]>, f64), Error> {
-        let sums = Sums::of(self.memory.as_ref(), self.techniques, self.integrals).ok_or(Error::Memory)?;
-        let rounds = sums.samples / self.sum_counts();
-        if rounds > 0.0 { Ok((sums, rounds)) } else { Err(Error::NoSamples) }
+    fn sums(&self) -> Result<(Sums<&[f64]>, f64), Error> {
+        let sums = Sums::of(self.memory.as_ref(), self.techniques, self.integrals, <[f64]>::split_at_checked)?;
+        let rounds = at(sums.samples, 0) / self.sum_counts();
+        ensure(rounds > 0.0, Error::NoSamples)?;
+        Ok((sums, rounds))
     }
 }
 
@@ -165,23 +183,17 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// infinity among the densities (combine delta distributions outside) or values.
     pub fn add(&mut self, technique: usize, pdf: &[f32], value: &[f32]) -> Result<(), Error> {
         let techniques = self.techniques;
-        if pdf.len() != techniques || value.len() != self.integrals {
-            return Err(Error::Range);
-        }
-        let Some(&own) = pdf.get(technique) else { return Err(Error::Range) };
-        if !pdf.iter().chain(value).all(|x| x.is_finite()) {
-            return Err(Error::NotFinite);
-        }
-        if own <= 0.0 || pdf.iter().any(|&p| p < 0.0) {
-            return Err(Error::Range);
-        }
+        ensure(pdf.len() == techniques && value.len() == self.integrals, Error::Range)?;
+        let own = *pdf.get(technique).ok_or(Error::Range)?;
+        ensure(pdf.iter().chain(value).all(|x| x.is_finite()), Error::NotFinite)?;
+        ensure(own > 0.0 && pdf.iter().all(|&p| p >= 0.0), Error::Range)?;
         let sum: f64 = pdf.iter().zip(&self.counts).map(|(&p, &n)| f64::from(p) * f64::from(n)).sum();
         let mut ratio = Vector::default();
         ratio.iter_mut().zip(pdf).for_each(|(ratio, &p)| *ratio = f64::from(p) / sum);
 
         let per_sample = 1.0 / self.sum_counts();
         let sums = self.sums_mut()?;
-        *sums.samples += 1.0;
+        sums.samples.iter_mut().for_each(|samples| *samples += 1.0);
         sums.ratio.iter_mut().zip(&ratio).for_each(|(sum, ratio)| *sum += ratio);
         linear::add_products(sums.matrix, first(&ratio, techniques), 1.0);
         let records = rows_mut(sums.records, record_len(techniques)).zip(rows(sums.alphas, techniques));
@@ -205,9 +217,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// Errors, which change nothing: [`Error::Unsupported`] for [`Solver::Progressive`]; others as for
     /// [`OptimalMis::solve`].
     pub fn next_batch(&mut self, solver: Solver) -> Result<(), Error> {
-        if solver == Solver::Progressive {
-            return Err(Error::Unsupported);
-        }
+        ensure(solver != Solver::Progressive, Error::Unsupported)?;
         let system = self.system(solver)?;
         let techniques = self.techniques;
         let sums = self.sums_mut()?;
@@ -234,17 +244,45 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// Errors: [`Error::Mismatch`] unless both have the same counts and number of integrals.
     pub fn merge<N: AsRef<[f64]>>(&mut self, other: &OptimalMis<N>) -> Result<(), Error> {
         let like = self.techniques == other.techniques && self.integrals == other.integrals;
-        if !like || !same(&self.counts, &other.counts) {
-            return Err(Error::Mismatch);
-        }
+        ensure(like && same(&self.counts, &other.counts), Error::Mismatch)?;
         let sums = sums_len(self.techniques, self.integrals);
         let into = first_mut(self.memory.as_mut(), sums).iter_mut();
         into.zip(other.memory.as_ref()).for_each(|(to, from)| *to += from);
         Ok(())
     }
 
-    fn sums_mut(&mut self) -> Result<Sums<&mut f64, &mut [f64]>, Error> {
-        Sums::of_mut(self.memory.as_mut(), self.techniques, self.integrals).ok_or(Error::Memory)
+    fn sums_mut(&mut self) -> Result<Sums<&mut [f64]>, Error> {
+        Sums::of(self.memory.as_mut(), self.techniques, self.integrals, <[f64]>::split_at_mut_checked)
+    }
+}
+
+/// The memory's parts: sums over the samples s, with S = sum_k n_k p_k.
+struct Sums<S> {
+    /// How many samples, less what has decayed: one number.
+    samples: S,
+    /// sum_s p / S, one per technique.
+    ratio: S,
+    /// A = sum_s p p' / S^2, its lower triangle by rows.
+    matrix: S,
+    /// Of each integral sum_s f / S, the sum of the progressive estimator's terms, and b = sum_s f p / S^2.
+    records: S,
+    /// Of each integral the progressive estimator's alpha, which is no sum.
+    alphas: S,
+}
+
+impl<S> Sums<S> {
+    fn of(
+        memory: S,
+        techniques: usize,
+        integrals: usize,
+        split: impl Fn(S, usize) -> Option<(S, S)>,
+    ) -> Result<Self, Error> {
+        let split = |memory, len| split(memory, len).ok_or(Error::Memory);
+        let (sums, alphas) = split(memory, sums_len(techniques, integrals))?;
+        let (samples, rest) = split(sums, 1)?;
+        let (ratio, rest) = split(rest, techniques)?;
+        let (matrix, records) = split(rest, packed_len(techniques))?;
+        Ok(Sums { samples, ratio, matrix, records, alphas })
     }
 }
 

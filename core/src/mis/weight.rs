@@ -1,7 +1,7 @@
 //! What a sample adds with the optimal weights, for a known alpha (2.15).
 
 use super::linear::MAX_TECHNIQUES;
-use crate::Error;
+use crate::error::{Error, ensure};
 use crate::real::Real;
 
 /// What one sample adds to the optimal MIS estimate: the term `w_j f / (n_j p_j)` of (2.10) with the optimal weight
@@ -35,19 +35,14 @@ pub fn optimal_contribution(
     value: f32,
 ) -> Result<f32, Error> {
     let one_length = counts.len() == pdf.len() && alpha.len() == pdf.len();
-    if !one_length || !(1..=MAX_TECHNIQUES).contains(&pdf.len()) {
-        return Err(Error::Range);
-    }
+    ensure(one_length && (1..=MAX_TECHNIQUES).contains(&pdf.len()), Error::Range)?;
     let own = (pdf.get(technique), counts.get(technique), alpha.get(technique));
     let (Some(&own_pdf), Some(&own_count), Some(&own_alpha)) = own else { return Err(Error::Range) };
-    if !value.is_finite() || !pdf.iter().chain(alpha).all(|x| x.is_finite()) {
-        return Err(Error::NotFinite);
-    }
-    if own_pdf == 0.0 || pdf.iter().any(|&p| p < 0.0) || counts.contains(&0) {
-        return Err(Error::Range);
-    }
+    ensure(value.is_finite() && pdf.iter().chain(alpha).all(|x| x.is_finite()), Error::NotFinite)?;
+    ensure(own_pdf > 0.0 && pdf.iter().all(|&p| p >= 0.0) && !counts.contains(&0), Error::Range)?;
     let sum: f64 = pdf.iter().zip(counts).map(|(&p, &n)| f64::from(n) * f64::from(p)).sum();
     let control: f64 = pdf.iter().zip(alpha).map(|(&p, &a)| f64::from(a) * f64::from(p)).sum();
     let term = f64::from(own_alpha) / f64::from(own_count) + (f64::from(value) - control) / sum;
-    if Real::abs(term) <= f64::from(f32::MAX) { Ok(term as f32) } else { Err(Error::Range) }
+    ensure(Real::abs(term) <= f64::from(f32::MAX), Error::Range)?;
+    Ok(term as f32)
 }

@@ -1,8 +1,8 @@
 //! The `.nft` format, version 1: a header of 128 bytes, then the values; `core/tiles/README.md` has the table.
 
 use super::shape::Shape;
-use crate::Error;
 use crate::checksum::crc;
+use crate::error::{Error, ensure};
 use crate::rows::{first, from};
 
 /// Bytes of the header.
@@ -51,7 +51,8 @@ impl Header {
         text.iter_mut().zip(kernel.bytes()).for_each(|(to, from)| *to = from);
         let header = Header { shape, seed, kernel: text };
         let is_whole = kernel.len() <= KERNEL_BYTES && !kernel.contains('\0');
-        if shape.check().is_ok() && header.text_is_valid() && is_whole { Ok(header) } else { Err(Error::Range) }
+        ensure(shape.check().is_ok() && header.text_is_valid() && is_whole, Error::Range)?;
+        Ok(header)
     }
 
     /// How many values, and how they are stored.
@@ -75,9 +76,7 @@ impl Header {
     /// # Errors
     /// [`Error::Length`] if the payload has not the bytes that the shape says.
     pub fn encode(&self, payload: &[u8]) -> Result<[u8; HEADER_BYTES], Error> {
-        if payload.len() as u64 != self.shape.payload_bytes() {
-            return Err(Error::Length);
-        }
+        ensure(payload.len() as u64 == self.shape.payload_bytes(), Error::Length)?;
         let rest = self.bytes(0);
         Ok(self.bytes(crc([first(&rest, CHECKSUM), from(&rest, CHECKSUM + 4), payload])))
     }
@@ -87,19 +86,16 @@ impl Header {
     /// # Errors
     /// As for [`Tile::from_bytes`](super::Tile::from_bytes).
     pub fn decode(bytes: &[u8]) -> Result<(Header, &[u8]), Error> {
-        if bytes.iter().zip(&MAGIC).any(|(byte, magic)| byte != magic) || bytes.is_empty() {
-            return Err(Error::Foreign);
-        }
-        let Some((head, payload)) = bytes.split_first_chunk::<HEADER_BYTES>() else { return Err(Error::Length) };
+        let is_ours = bytes.iter().zip(&MAGIC).all(|(byte, magic)| byte == magic) && !bytes.is_empty();
+        ensure(is_ours, Error::Foreign)?;
+        let (head, payload) = bytes.split_first_chunk::<HEADER_BYTES>().ok_or(Error::Length)?;
         let header = Header::parse(head)?;
-        if payload.len() as u64 != header.shape.payload_bytes() {
-            return Err(Error::Length);
-        }
         // The header says nothing but its fields: all of its bytes are those it would be written with. Compared one by
         // one, as `==` may call bcmp, which not every C library has.
         let written = header.encode(payload)?;
         let difference = head.iter().zip(&written).fold(0, |all, (a, b)| all | (a ^ b));
-        if difference == 0 { Ok((header, payload)) } else { Err(Error::Corrupt) }
+        ensure(difference == 0, Error::Corrupt)?;
+        Ok((header, payload))
     }
 
     /// The fields, in range, of bytes whose checksum has yet to be compared.

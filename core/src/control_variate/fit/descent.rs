@@ -12,7 +12,7 @@ use super::super::result::{self, Outcome, Summary};
 use super::super::samples::{Reader, Samples, Subset};
 use crate::arena::Arena;
 use crate::basis::Basis;
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::lanes::{self, LANES};
 use crate::matrix::{at, copy, from_mut, rows_mut};
 use crate::real::Real;
@@ -90,26 +90,22 @@ pub fn estimate_from<R: Real>(
     let reader = Reader::new(config, samples)?;
     Plan::new::<R>(config, basis.columns(), reader.len())?;
     let columns = config.controls + basis.columns();
-    if coefficients.len() != columns * reader.channels() {
-        return Err(Error::Range);
-    }
-    if !coefficients.iter().all(|value| value.is_finite()) {
-        return Err(Error::NotFinite);
-    }
+    ensure(coefficients.len() == columns * reader.channels(), Error::Range)?;
+    ensure(coefficients.iter().all(|value| value.is_finite()), Error::NotFinite)?;
     reader.check()?;
     let loaded = design::size(reader.len(), columns, reader.channels());
     let needed = loaded.and_then(|loaded| loaded.checked_add(size(columns, reader.channels())));
     let mut arena = Arena::new(workspace, needed)?;
     let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena).ok_or(Error::NoSamples)?;
     let solutions = arena.take(coefficients.len());
-    let unit = |index: usize| at(&design.units, index / columns.max(1));
+    let (units, channel) = (design.units, |index: usize| index / columns.max(1));
     for (index, (out, &value)) in solutions.iter_mut().zip(&*coefficients).enumerate() {
-        *out = unit(index).stored_length(value);
+        *out = units.stored_length(channel(index), value);
     }
     let summary = Summary::of(&design, &reader);
     let outcome = descend(&design, config, &basis, solutions, summary.variance, &mut arena);
     for (index, (out, &value)) in coefficients.iter_mut().zip(&*solutions).enumerate() {
-        *out = result::saturate(unit(index).length(value));
+        *out = result::saturate(units.length(channel(index), value));
     }
     Ok(summary.finish(outcome))
 }
@@ -221,12 +217,12 @@ impl<R: Real> Descent<R> {
         let is_adam = config.optimizer == Optimizer::Adam;
         let rate = match config.learning_rate {
             0.0 => R::from_f64(if is_adam { ADAM_RATE } else { 1.0 }),
-            rate => R::from_f32(rate),
+            rate => R::from(rate),
         };
         let rate = if is_adam { rate * deviation } else { rate / curvature };
         let momentum = match config.optimizer {
             Optimizer::Plain => R::ZERO,
-            _ if config.momentum > 0.0 => R::from_f32(config.momentum),
+            _ if config.momentum > 0.0 => R::from(config.momentum),
             Optimizer::Momentum => R::from_f64(MOMENTUM),
             Optimizer::Adam => R::from_f64(ADAM_DECAY[0]),
         };

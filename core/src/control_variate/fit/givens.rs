@@ -8,7 +8,7 @@ use super::super::sums::{Layout, Sums, not_below_zero};
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::linalg::givens;
-use crate::matrix::{at, copy, from_mut};
+use crate::matrix::{at, copy, from_mut, set};
 use crate::real::{Real, rounding};
 use core::mem::take;
 
@@ -93,9 +93,7 @@ pub(crate) fn least_squares<R: Real>(
 /// x := `value` e_j
 fn unit<R: Real>(x: &mut [R], j: usize, value: R) {
     x.fill(R::ZERO);
-    if let Some(x_j) = x.get_mut(j) {
-        *x_j = value;
-    }
+    set(x, j, value);
 }
 
 /// Takes out each row of the factor whose pivot is noise in its column, of the squared length given: where columns

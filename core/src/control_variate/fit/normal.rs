@@ -11,7 +11,7 @@ use super::{Fit, Penalty};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::ldlt::Ldlt;
-use crate::matrix::{Panel, Triangle, copy, packed_len, row_at, rows};
+use crate::matrix::{Panel, Triangle, copy, packed_len, row_at, rows, set};
 use crate::real::{Real, rounding};
 
 /// A ridge problem whose intercept is free and eliminated.
@@ -267,9 +267,7 @@ impl<'a, R: Real> Centred<'a, R> {
             // What is left of a column that hardly moves is rounding noise, and says nothing about the values.
             gram.row_mut(j).fill(R::ZERO);
             for k in j + 1..columns {
-                if let Some(value) = gram.at_mut(k, j) {
-                    *value = R::ZERO;
-                }
+                set(gram.row_mut(k), j, R::ZERO);
             }
             for value in rhs.column_mut(j) {
                 *value = R::ZERO;

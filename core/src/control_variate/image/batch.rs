@@ -13,7 +13,7 @@ use super::products::{
 use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, row_at, row_at_mut, rows};
+use crate::matrix::{at, row_at, row_at_mut, rows, set};
 use crate::real::Real;
 use core::array::from_fn;
 
@@ -239,9 +239,7 @@ impl<'a> Batch<'a> {
                 let pixels = numbers.map(|number| (number & Image::MAX_PIXELS) as usize);
                 for channel in 0..channels {
                     let entry = self.entry(channel, (block, row));
-                    if let Some(range) = self.ranges.get_mut(entry) {
-                        *range = call.range(&pixels, channel).map(|value| only(&one, &value));
-                    }
+                    set(self.ranges, entry, call.range(&pixels, channel).map(|value| only(&one, &value)));
                 }
                 if let (Some(out), Some(inside)) = (self.numbers.get_mut(block), self.inside.get_mut(block)) {
                     (out[row], inside[row]) = (pixels.map(|pixel| f32::from_bits(pixel as u32)), one);

@@ -4,11 +4,10 @@ use super::super::config::{Config, Estimator, Ridge};
 use super::super::samples::Reader;
 use super::pixels::{Image, Windows};
 use crate::basis::{Basis, Shape};
-use core::ops::Deref;
 
 /// What all groups of a call have in common.
 #[derive(Clone, Copy)]
-pub(super) struct Layout<'a> {
+pub(super) struct Call<'a> {
     pub(super) config: &'a Config,
     pub(super) image: &'a Image<'a>,
     pub(super) windows: Windows,
@@ -17,23 +16,11 @@ pub(super) struct Layout<'a> {
     pub(super) shape: Shape,
     /// Samples of a pixel.
     pub(super) n: usize,
-}
-
-pub(super) struct Call<'a> {
-    pub(super) layout: Layout<'a>,
     pub(super) basis: &'a Basis,
     pub(super) reader: Reader<'a>,
 }
 
-impl<'a> Deref for Call<'a> {
-    type Target = Layout<'a>;
-
-    fn deref(&self) -> &Layout<'a> {
-        &self.layout
-    }
-}
-
-impl Layout<'_> {
+impl Call<'_> {
     /// Whether there is one candidate, all of whose columns are used.
     pub(super) fn is_single_fit(&self) -> bool {
         self.config.estimator == Estimator::LeaveOneOut || matches!(self.config.ridge, Ridge::Fixed(_))

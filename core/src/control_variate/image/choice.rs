@@ -2,7 +2,7 @@
 
 use super::super::trust;
 use super::batch::{Batch, MAX_FIXED};
-use super::call::Layout;
+use super::call::Call;
 use super::fit::Fits;
 use super::products::{
     AT_ONCE, COLOURS, Colours, Eight, Four, NONE, add_products, combine, minus, only, plus, plus_four, product, total,
@@ -39,9 +39,9 @@ pub(super) struct Choices {
 }
 
 impl Choices {
-    pub(super) fn new(layout: &Layout<'_>, terms: &Terms) -> Self {
-        let (channels, fits, has_edges) = (layout.config.channels, terms.candidates(), terms.has_edges);
-        Self { channels, fits, has_edges, count: (1 + fits) * (layout.values() / channels.max(1)) }
+    pub(super) fn new(call: &Call<'_>, terms: &Terms) -> Self {
+        let (channels, fits, has_edges) = (call.config.channels, terms.candidates(), terms.has_edges);
+        Self { channels, fits, has_edges, count: (1 + fits) * (call.values() / channels.max(1)) }
     }
 
     /// Whether a choice is an edge.

@@ -7,7 +7,7 @@
 //! coordinates, whose integral the trapezoid rule gives: the correction's mean is 0 whatever was fitted.
 
 use super::batch::{Batch, MAX_FIXED};
-use super::call::{Call, Layout};
+use super::call::Call;
 use super::fit::Fits;
 use super::groups::Place;
 use super::products::{
@@ -19,7 +19,7 @@ use crate::basis::MAX_DIMS;
 use crate::control_variate::Config;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::ldlt;
-use crate::matrix::{at, copy, first_mut, from, from_mut, packed_len, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{at, copy, first_mut, from, from_mut, packed_len, row, row_at, row_at_mut, row_mut, set};
 use crate::real::Real;
 use core::f32::consts::{LN_2, LOG2_E};
 
@@ -49,13 +49,11 @@ const CELLS: usize = 16;
 const SQRT_3: f32 = 1.732_050_8;
 const SQRT_5: f32 = 2.236_068;
 
-impl Layout<'_> {
+impl Call<'_> {
     pub(super) fn has_edges(&self) -> bool {
         self.config.edges > 0 && self.n >= FEWEST_SAMPLES && !self.is_single_fit()
     }
-}
 
-impl Call<'_> {
     /// Whether a group, `members` of a window, has lit and dark samples, if edges are looked for.
     pub(super) fn has_edge(&self, window: usize, members: &[f32], len: usize) -> bool {
         if !self.has_edges() || len < FEWEST_PIXELS {
@@ -64,7 +62,7 @@ impl Call<'_> {
         let (window, channels) = (self.window(window), self.config.channels);
         let is_lit = |member: usize, sample: usize| {
             let pixel = self.pixel(window, Place::read(at(members, member)), member);
-            row_at(self.reader.inputs(), channels, pixel * self.n + sample).iter().any(|&value| value > 0.0)
+            row_at(self.reader.samples.f, channels, pixel * self.n + sample).iter().any(|&value| value > 0.0)
         };
         let first = is_lit(0, 0);
         (0..len).any(|member| (0..self.n).any(|sample| is_lit(member, sample) != first))
@@ -188,7 +186,7 @@ impl<'a> Edges<'a> {
                 call.reader.put_positions(&pixels.map(|pixel| pixel * call.n + sample), 1, row * LANES, &mut x);
                 lit[row] = NONE;
                 for (channel, (value, units)) in values.iter_mut().zip(&batch.units).enumerate() {
-                    let input = call.gather(call.reader.inputs(), &pixels, (call.n, sample), channel);
+                    let input = call.gather(call.reader.samples.f, &pixels, (call.n, sample), channel);
                     lit[row] = lanes::zip(&lit[row], &input, |lit, input| if input > 0.0 { 1.0 } else { lit });
                     value[row] = units.scale(&input);
                 }
@@ -311,9 +309,7 @@ impl<'a> Edges<'a> {
         let [count, lit] = [sums.gram, sums.sides].map(|sums| at(sums, 0));
         let odds = lanes::zip(&lit, &count, |lit, count| (lit + 0.5) / (count - lit + 0.5));
         let share = odds.map(|odds| odds / (1.0 + odds));
-        if let Some(first) = weights.first_mut() {
-            *first = lanes::log2(&odds).map(|logarithm| logarithm * LN_2);
-        }
+        set(weights, 0, lanes::log2(&odds).map(|logarithm| logarithm * LN_2));
         let mut all = [NONE; packed_len(MAX_COLUMNS)];
         let matrix = first_mut(&mut all, packed_len(width));
         let mut sides = [NONE; MAX_COLUMNS];

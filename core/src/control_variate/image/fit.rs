@@ -13,7 +13,7 @@ use crate::arena::Arena;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
 use crate::matrix::{
-    at, copy, diagonal, first, first_mut, from, packed_len, row, row_at, row_at_mut, row_mut, rows, rows_mut,
+    at, copy, diagonal, first, first_mut, from, packed_len, row, row_at, row_at_mut, row_mut, rows, rows_mut, set,
 };
 use crate::real::Real;
 
@@ -118,9 +118,8 @@ impl<'a> Fits<'a> {
                         fitted[row] = lanes::plus_product(fitted[row], axis[row], slope[row]);
                     }
                 }
-                if let Some(out) = self.corrections_mut(block, value).get_mut(fit) {
-                    *out = fitted.map(|fitted| fitted.map(|fitted| -fitted));
-                }
+                let correction = fitted.map(|fitted| fitted.map(|fitted| -fitted));
+                set(self.corrections_mut(block, value), fit, correction);
             }
         }
     }
@@ -166,9 +165,8 @@ impl<'a> Fits<'a> {
     /// Sets what a fit leaves of the samples of a colour. A difference of sums has no more digits than they.
     pub(super) fn set_within(&mut self, batch: &Batch<'_>, (value, colour): (usize, usize), fit: usize, left: &Eight) {
         let whole = batch.whole(value, colour);
-        if let Some(out) = row_at_mut(self.within, self.count, value * COLOURS + colour).get_mut(fit) {
-            *out = lanes::zip(left, &whole, |left, whole| Real::max(left, whole * ROUNDING));
-        }
+        let left = lanes::zip(left, &whole, |left, whole| Real::max(left, whole * ROUNDING));
+        set(row_at_mut(self.within, self.count, value * COLOURS + colour), fit, left);
     }
 
     /// The fit to all pixels of some colours.
@@ -212,11 +210,7 @@ impl<'a> Fits<'a> {
             unit.iter_mut().enumerate().for_each(|(j, out)| *out = if j == k { [1.0; LANES] } else { NONE });
             ldlt::forward_one(gram, k, unit);
             for (side, trends) in rows(sides, width).zip(rows_mut(self.coefficients, self.count * terms.fixed())) {
-                sums_to(&terms.ends, unit, side, |fit, sum| {
-                    if let Some(out) = row_at_mut(trends, terms.fixed(), fit).get_mut(k) {
-                        *out = sum;
-                    }
-                });
+                sums_to(&terms.ends, unit, side, |fit, sum| set(row_at_mut(trends, terms.fixed(), fit), k, sum));
             }
             ldlt::divide_each(gram, unit);
         }

@@ -1,6 +1,6 @@
 //! Groups: the pixels of one window and one surface, which share fits.
 
-use super::call::{Call, Layout};
+use super::call::Call;
 use super::pixels::{Image, Rectangle};
 use crate::arena::Arena;
 use crate::lanes::LANES;
@@ -79,7 +79,7 @@ pub(super) struct Groups<'a> {
     pub(super) corrections: &'a mut [f32],
 }
 
-impl Layout<'_> {
+impl Call<'_> {
     /// How many windows are worked on together.
     pub(super) fn windows_at_once(&self) -> usize {
         let [across, down] = self.windows.counts();
@@ -97,32 +97,22 @@ impl Layout<'_> {
         if self.is_single_fit() && self.n > 1 { 2 } else { self.windows.axes() + 3 }
     }
 
-    fn record_len(&self) -> usize {
-        RECORD + 2 + self.config.channels + self.turns() * 2 * self.config.channels
-    }
-
-    /// Numbers of places, records, order and corrections, of as many windows as are worked on together.
-    fn groups_lens(&self) -> [usize; 4] {
-        let (windows, pixels) = (self.windows_at_once(), self.windows.pixels());
-        let corrections = windows.saturating_mul(pixels).saturating_mul(self.config.channels);
-        if self.is_joined() {
-            return [0, self.record_len(), 1, corrections];
-        }
-        let most = windows.saturating_mul(pixels / self.least().max(1));
-        [windows.saturating_mul(pixels), most.saturating_mul(self.record_len()), most, corrections]
-    }
-
+    /// Room for those of as many windows as are worked on together.
     pub(super) fn groups<'a>(&self, arena: &mut Arena<'a, f32>) -> Groups<'a> {
-        let [list, records, order, corrections] = self.groups_lens();
+        let (windows, each, channels) = (self.windows_at_once(), self.windows.pixels(), self.config.channels);
+        let pixels = windows.saturating_mul(each);
+        let most = windows.saturating_mul(each / self.least().max(1));
+        let (list, count) = if self.is_joined() { (0, 1) } else { (pixels, most) };
+        let width = RECORD + 2 + channels + self.turns() * 2 * channels;
         Groups {
             count: 0,
-            channels: self.config.channels,
-            width: self.record_len(),
+            channels,
+            width,
             list: arena.take(list),
-            records: arena.take(records),
-            order: arena.take(order),
+            records: arena.take(count.saturating_mul(width)),
+            order: arena.take(count),
             // Eight are read at a time, also behind the last.
-            corrections: arena.zeros(corrections),
+            corrections: arena.zeros(pixels.saturating_mul(channels)),
         }
     }
 
@@ -151,9 +141,7 @@ impl Layout<'_> {
             }
         }
     }
-}
 
-impl Call<'_> {
     /// Divides windows `first` to before `end` into groups.
     pub(super) fn divide(&self, first: usize, end: usize, groups: &mut Groups<'_>) {
         groups.count = 0;

@@ -94,7 +94,7 @@ impl Batch<'_> {
                 let (mut mean, mut known) = (NONE, NONE);
                 let pixels = self.pixels((slot / AT_ONCE, slot % AT_ONCE));
                 for sample in 0..call.n {
-                    for (sum, values) in [(&mut mean, call.reader.inputs()), (&mut known, call.image.known)] {
+                    for (sum, values) in [(&mut mean, call.reader.samples.f), (&mut known, call.image.known)] {
                         let value = call.gather(values, &pixels, (call.n, sample), channel);
                         *sum = plus(sum, &value.map(|value| value * inverse));
                     }

@@ -11,7 +11,7 @@ use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
 use crate::matrix::{
-    at, copy, first, first_mut, from_mut, halves, halves_mut, row, row_at, row_at_mut, row_mut, rows, rows_mut,
+    at, copy, first, first_mut, from_mut, halves, halves_mut, row, row_at, row_at_mut, row_mut, rows, rows_mut, set,
 };
 use crate::real::Real;
 use core::array::from_fn;
@@ -111,7 +111,9 @@ impl Batch<'_> {
         let mut sums = [[NONE; 3]; 2 * Config::MAX_CHANNELS];
         for begin in (0..call.n).step_by(AT_ONCE) {
             let count = AT_ONCE.min(call.n - begin);
-            call.read_values(self, (block, row), begin..begin + count, samples.values);
+            let (pixels, which) = (self.pixels((block, row)), begin..begin + count);
+            call.put_values(self, (block, row), &pixels, &which, 0, samples.values);
+            self.put_in_units(samples.values);
             for ([first, total, squares], value) in sums.iter_mut().zip(samples.values.iter()) {
                 *first = if begin == 0 { value[0] } else { *first };
                 for value in value.iter().take(count) {
@@ -288,9 +290,7 @@ impl<'a> Deviations<'a> {
         for j in 0..width {
             for k in 0..j {
                 let product = at(self.functions, j * width + k);
-                if let Some(out) = self.functions.get_mut(k * width + j) {
-                    *out = product;
-                }
+                set(self.functions, k * width + j, product);
                 lanes::keep_together();
             }
         }

@@ -53,11 +53,11 @@ use super::config::{Color, Config, Estimate, Estimator, NonFinite, Solver};
 use super::samples::{Reader, Samples};
 use crate::arena::Arena;
 use crate::basis::Basis;
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::lanes::LANES;
 use crate::processor::{Portable, Processor};
 use batch::Batch;
-use call::{Call, Layout};
+use call::Call;
 use choice::{Choices, Room, Shares};
 use edges::Edges;
 use fit::Fits;
@@ -71,7 +71,7 @@ use terms::Terms;
 /// # Errors
 /// As for [`estimate_image`]; [`Error::Memory`] if no memory could be large enough.
 pub fn image_workspace_len(config: &Config, image: &Image<'_>, n: usize) -> Result<usize, Error> {
-    Layout { n, ..Layout::new(config, image)? }.workspace_len().ok_or(Error::Memory)
+    Call { n, ..Call::new(config, image, &Basis::empty())? }.workspace_len().ok_or(Error::Memory)
 }
 
 /// Which samples count must not depend on the pixel, the fit is of the channels, and other estimators share no fits.
@@ -81,7 +81,7 @@ fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
     let is_halved = config.estimator == Estimator::KFold && image.has_known();
     let solver = matches!(config.solver, Solver::Auto | Solver::NormalEquations);
     let samples = config.color == Color::PerChannel && config.non_finite == NonFinite::Error && config.controls == 0;
-    if estimator && !is_halved && solver && samples { Ok(()) } else { Err(Error::Unsupported) }
+    ensure(estimator && !is_halved && solver && samples, Error::Unsupported)
 }
 
 /// Estimates every pixel of an image from `samples.f.len() / (pixels channels)` samples in each, pixel after pixel.
@@ -131,27 +131,27 @@ pub fn estimate_image_by<P: Processor>(
     workspace: &mut [f32],
     out: &mut dyn FnMut(usize, Estimate),
 ) -> Result<(), Error> {
-    let layout = Layout::new(config, image)?;
-    let reader = Reader::new(config, samples)?;
-    image.check(config, layout.pixels, samples.f.len())?;
-    let n = reader.len() / layout.pixels.max(1);
-    if n * layout.pixels != reader.len() {
-        return Err(Error::Range);
-    }
-    let layout = Layout { n, ..layout };
     let mut basis = Basis::empty();
-    basis.set(config.basis, layout.shape);
+    basis.set(config.basis, config.checked_shape()?.apart());
+    let call = Call::new(config, image, &basis)?;
+    let reader = Reader::new(config, samples)?;
+    image.check(config, call.pixels, samples.f.len())?;
+    let n = reader.len() / call.pixels.max(1);
+    ensure(n * call.pixels == reader.len(), Error::Range)?;
     reader.check()?;
-    let mut arena = Arena::new(workspace, layout.workspace_len())?;
-    Call { layout, basis: &basis, reader }.run::<P>(&mut arena, out);
+    let call = Call { n, reader, ..call };
+    let mut arena = Arena::new(workspace, call.workspace_len())?;
+    call.run::<P>(&mut arena, out);
     Ok(())
 }
 
-impl<'a> Layout<'a> {
-    fn new(config: &'a Config, image: &'a Image<'a>) -> Result<Self, Error> {
+impl<'a> Call<'a> {
+    /// Without samples.
+    fn new(config: &'a Config, image: &'a Image<'a>, basis: &'a Basis) -> Result<Self, Error> {
         let shape = config.checked_shape()?.apart();
         check_supported(config, image)?;
-        Ok(Self { config, image, windows: image.windows()?, pixels: image.pixels()?, shape, n: 0 })
+        let (windows, pixels) = (image.windows()?, image.pixels()?);
+        Ok(Self { config, image, windows, pixels, shape, n: 0, basis, reader: Reader::default() })
     }
 
     /// How many rows of windows are worked on before pixels are written, and how many rows of pixels those touch.
@@ -166,12 +166,11 @@ impl<'a> Layout<'a> {
     fn workspace_len(&self) -> Option<usize> {
         // More samples than 32 bits count need more memory than there is.
         u32::try_from(self.pixels.checked_mul(self.n)?).ok()?;
-        let call = Call { layout: *self, basis: &Basis::empty(), reader: Reader::default() };
         let (arena, len) = (&mut Arena::count(), self.windows.pixels());
-        Band::new(&call, self.band()[1], arena);
+        Band::new(self, self.band()[1], arena);
         self.groups(arena);
         let terms = Terms::new(self, len, self.has_edges());
-        let batch = Batch::new(&call, terms, [Group { len, ..Group::default() }; LANES], arena);
+        let batch = Batch::new(self, terms, [Group { len, ..Group::default() }; LANES], arena);
         batch.related(arena);
         Loading::new(&batch, arena);
         Fits::new(&batch, arena);

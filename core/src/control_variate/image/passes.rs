@@ -14,7 +14,7 @@ use super::sums::Band;
 use super::terms::Terms;
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, copy, row_at, row_at_mut, rows};
+use crate::matrix::{at, copy, row_at, row_at_mut, rows, set};
 use crate::processor::Processor;
 use crate::real::Real;
 use core::hint::black_box;
@@ -79,8 +79,8 @@ impl Call<'_> {
                         columns = last.1;
                         if self.is_joined() {
                             lanes = [group; LANES];
-                        } else if let Some(lane) = lanes.get_mut(used) {
-                            *lane = group;
+                        } else {
+                            set(&mut lanes, used, group);
                         }
                         used += 1;
                     }
@@ -222,10 +222,8 @@ impl Batch<'_> {
                 for (row, sum) in sum.iter().enumerate() {
                     for ((group, index), sum) in self.lanes.iter().zip(self.members((block, row))).zip(sum) {
                         let at = (group.start + index as usize) * channels + channel;
-                        if (index as usize) < group.len
-                            && let Some(out) = groups.corrections.get_mut(at)
-                        {
-                            *out = *sum;
+                        if (index as usize) < group.len {
+                            set(groups.corrections, at, *sum);
                         }
                     }
                 }

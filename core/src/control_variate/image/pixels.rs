@@ -1,7 +1,7 @@
 //! The pixels of an image, and which of them share fits.
 
 use crate::control_variate::Config;
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use core::ffi::CStr;
 
 /// The pixels' axes: x, y and frames.
@@ -187,10 +187,9 @@ impl Image<'_> {
 
     /// The same, or the rule that is broken.
     fn placed(&self) -> Result<Windows, &'static CStr> {
-        let rule = |is_kept: bool, words: &'static CStr| if is_kept { Ok(()) } else { Err(words) };
-        rule(self.width > 0 && self.height > 0, c"width and height must be at least 1")?;
+        ensure(self.width > 0 && self.height > 0, c"width and height must be at least 1")?;
         let is_whole = self.given.is_empty() && self.wanted.is_empty();
-        rule(is_whole || !self.unordered, c"given and wanted must be all zero where pixels are unordered")?;
+        ensure(is_whole || !self.unordered, c"given and wanted must be all zero where pixels are unordered")?;
         // Pixels without places are a row, and its own window.
         let image = match self.unordered {
             true => [self.pixels().map_err(|_| MOST)?, 1, 1],
@@ -207,18 +206,18 @@ impl Image<'_> {
         let is_small = width.saturating_mul(height).saturating_mul(frames) <= Self::MAX_WINDOW;
         if self.unordered {
             let is_kept = is_small || self.surfaces.is_empty();
-            rule(is_kept, c"pixels with surfaces must be at most 1024 where they are unordered")?;
+            ensure(is_kept, c"pixels with surfaces must be at most 1024 where they are unordered")?;
         } else {
-            rule(is_small, c"window must be at most 1024 pixels, all frames together")?;
+            ensure(is_small, c"window must be at most 1024 pixels, all frames together")?;
         }
-        rule(stride <= side, c"stride must be at most window")?;
-        rule(given.is_within(&all), c"given must lie in the image, and have pixels")?;
-        rule(wanted.is_within(&given), c"wanted must lie in what is given, and have pixels")?;
+        ensure(stride <= side, c"stride must be at most window")?;
+        ensure(given.is_within(&all), c"given must lie in the image, and have pixels")?;
+        ensure(wanted.is_within(&given), c"wanted must lie in what is given, and have pixels")?;
         let (extent, is_ordered) = ([width, height, frames], !self.unordered);
         let mut windows = Windows { extent, stride, image, is_ordered, given, wanted, used: Rectangle::default() };
         windows.used = windows.with_pixels(&wanted);
         let is_enough = windows.needed().is_within(&given);
-        rule(is_enough, c"given must hold the windows of wanted whole: see nf_cv_image_needed()").map(|()| windows)
+        ensure(is_enough, c"given must hold the windows of wanted whole: see nf_cv_image_needed()").map(|()| windows)
     }
 
     pub(super) fn frames(&self) -> usize {
@@ -239,15 +238,11 @@ impl Image<'_> {
         let each = pixels.checked_mul(config.channels);
         let surfaces_fit = self.surfaces.is_empty() || self.surfaces.len() == pixels;
         let known_fits = fits(self.known, Some(values)) && self.known.is_empty() == self.known_integrals.is_empty();
-        if !surfaces_fit || !known_fits || !fits(self.factors, each) || !fits(self.known_integrals, each) {
-            return Err(Error::Range);
-        }
+        let lengths_fit = surfaces_fit && known_fits && fits(self.factors, each) && fits(self.known_integrals, each);
+        ensure(lengths_fit, Error::Range)?;
         let values = [self.factors, self.known, self.known_integrals].into_iter().flatten();
-        if !values.into_iter().all(|value| value.is_finite()) {
-            return Err(Error::NotFinite);
-        }
-        let is_negative = self.factors.iter().chain(self.known_integrals).any(|&value| value < 0.0);
-        if is_negative { Err(Error::Range) } else { Ok(()) }
+        ensure(values.into_iter().all(|value| value.is_finite()), Error::NotFinite)?;
+        ensure(self.factors.iter().chain(self.known_integrals).all(|&value| value >= 0.0), Error::Range)
     }
 }
 

@@ -28,7 +28,7 @@ impl Call<'_> {
         for begin in (0..self.n).step_by(AT_ONCE) {
             let mut four = [NONE; AT_ONCE];
             let values = first_mut(&mut four, AT_ONCE.min(self.n - begin));
-            self.put_rows(self.reader.inputs(), pixels, (self.n, begin), channel, values);
+            self.put_rows(self.reader.samples.f, pixels, (self.n, begin), channel, values);
             for value in values {
                 low = lanes::zip(value, &low, Real::min);
                 high = lanes::zip(value, &high, Real::max);
@@ -115,19 +115,6 @@ impl Call<'_> {
         }
     }
 
-    /// Reads the values alone of some samples of a slot's pixels.
-    #[inline]
-    pub(super) fn read_values(
-        &self,
-        batch: &Batch<'_>,
-        slot: (usize, usize),
-        samples: Range<usize>,
-        values: &mut [Four],
-    ) {
-        self.put_values(batch, slot, &batch.pixels(slot), &samples, 0, values);
-        batch.put_in_units(values);
-    }
-
     /// The slices of samples that were read.
     #[inline]
     pub(super) fn slices(&self, rows: &Rows<'_>) -> Four {
@@ -140,7 +127,7 @@ impl Call<'_> {
 
     /// Values of samples of each pixel, as they were given but for factors and what is known of them: in each column
     /// from `row` on.
-    fn put_values(
+    pub(super) fn put_values(
         &self,
         batch: &Batch<'_>,
         (block, slot): (usize, usize),
@@ -156,7 +143,7 @@ impl Call<'_> {
             match batch.ranges.get(index(channel)) {
                 // The survey has read it.
                 Some([only, _]) if self.n == 1 => out.fill(*only),
-                _ => self.put_rows(self.reader.inputs(), pixels, (self.n, samples.start), channel, out),
+                _ => self.put_rows(self.reader.samples.f, pixels, (self.n, samples.start), channel, out),
             }
         }
         for (channel, (out, values)) in rest.iter_mut().zip(inputs).enumerate() {

@@ -20,7 +20,7 @@ use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
 use crate::matrix::{
     at, copy, diagonal, first_mut, halves, halves_mut, packed_len, part, row, row_at, row_at_mut, row_mut, rows,
-    rows_mut, split_at,
+    rows_mut, set, split_at,
 };
 use crate::real::Real;
 use core::ops::Range;
@@ -251,9 +251,7 @@ impl<'a> Apart<'a> {
             for (side, trends) in rows(of_values, width).zip(rows_mut(self.trends, ends.len() * fixed)) {
                 let own_sum = at(trends, k);
                 sums_to(ends, unit, side, |fit, sum| {
-                    if let Some(trend) = row_at_mut(trends, fixed, fit).get_mut(k) {
-                        *trend = plus(&own_sum, &sum);
-                    }
+                    set(row_at_mut(trends, fixed, fit), k, plus(&own_sum, &sum));
                 });
             }
             ldlt::divide_each(self.border, unit);

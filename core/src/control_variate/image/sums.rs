@@ -2,7 +2,7 @@
 
 use super::super::config::{Config, Estimate};
 use super::super::result::{mean_divisor, saturate, standard_error};
-use super::call::{Call, Layout};
+use super::call::Call;
 use super::groups::{Groups, Place};
 use super::products::{Eight, NONE, empty, product};
 use crate::arena::Arena;
@@ -87,14 +87,12 @@ impl<'a> Band<'a> {
     }
 }
 
-impl Layout<'_> {
+impl Call<'_> {
     /// Groups of eight in a row of pixels.
-    pub(super) fn eights(&self) -> usize {
+    fn eights(&self) -> usize {
         self.windows.given.width.div_ceil(LANES)
     }
-}
 
-impl Call<'_> {
     /// Adds the groups' corrections to the sums of their pixels, in the order of the windows.
     #[inline(always)]
     pub(super) fn add(&self, groups: &Groups<'_>, band: &mut Band<'_>) {
@@ -266,7 +264,7 @@ impl Call<'_> {
     /// A channel of a sample of each pixel, as it was given.
     fn given(&self, pixel: usize, sample: usize, channel: usize) -> Wide {
         let channels = self.config.channels;
-        let values = from(self.reader.inputs(), (pixel * self.n + sample) * channels + channel);
+        let values = from(self.reader.samples.f, (pixel * self.n + sample) * channels + channel);
         wide(&every(self.n * channels, values))
     }
 }

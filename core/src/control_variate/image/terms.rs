@@ -2,7 +2,7 @@
 
 use super::super::config::Config;
 use super::super::ridge;
-use super::call::Layout;
+use super::call::Call;
 use super::products::{Eight, Four, times};
 use crate::basis::{Basis, MAX_ORDER};
 use crate::lanes;
@@ -58,14 +58,14 @@ pub(super) struct Terms {
 
 impl Terms {
     /// For fits to so many pixels of a call; perhaps with an edge.
-    pub(super) fn new(layout: &Layout<'_>, pixels: usize, has_edges: bool) -> Self {
-        let (config, shape, axes) = (layout.config, &layout.shape, layout.windows.axes());
+    pub(super) fn new(call: &Call<'_>, pixels: usize, has_edges: bool) -> Self {
+        let (config, shape, axes) = (call.config, &call.shape, call.windows.axes());
         let (functions, fixed) = (shape.columns(), 1 + axes);
         let (slices, copies) = shape.slices_apart();
-        if layout.is_known_alone() || functions + slices == 0 {
+        if call.is_known_alone() || functions + slices == 0 {
             return Self { axes, has_edges, ..Self::default() };
         }
-        let samples = pixels.saturating_mul(layout.n);
+        let samples = pixels.saturating_mul(call.n);
         let mut terms = Self { axes, functions, slices, copies, has_edges, ..Self::default() };
         // As many degrees as leave two samples to each column.
         for degree in 1..=MOVING_DEGREE.min(config.order.saturating_sub(1)).max(1) {
@@ -83,7 +83,7 @@ impl Terms {
                 let _ = (terms.ends.push(columns), terms.own.push(own));
             }
         };
-        if !layout.is_single_fit() {
+        if !call.is_single_fit() {
             let own = usize::from(slices > 0);
             for degree in 1..=config.order {
                 end(fixed + shape.up_to_degree(degree), own);

@@ -4,9 +4,9 @@ use super::draw::{check_lengths, noise};
 use super::importances::Table;
 use super::kernel::{Kernel, Portable};
 use super::mixture::Mixture;
-use crate::Error;
+use crate::error::{Error, ensure};
 use crate::rng::Rng;
-use crate::rows::first;
+use crate::rows::{first, set};
 
 /// A search for an item not yet taken ends where so many should have been found: once in e^64 searches, or where the
 /// table's memory has been damaged.
@@ -38,15 +38,11 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
         mut weight: Option<&mut [f32]>,
     ) -> Result<(), Error> {
         check_lengths(index, &weight)?;
-        if index.len() > self.state.items as usize {
-            return Err(Error::Range);
-        }
         let items = self.state.items;
+        ensure(index.len() <= items as usize, Error::Range)?;
         let importance = first(self.importance.as_ref(), items as usize);
         let possible = || importance.iter().filter(|q| **q > 0.0).take(index.len()).count();
-        if self.state.uniform_fraction == 0.0 && possible() < index.len() {
-            return Err(Error::NoSamples);
-        }
+        ensure(self.state.uniform_fraction > 0.0 || possible() == index.len(), Error::NoSamples)?;
         let scale = self.state.scale;
         let batch = index.len() as f64;
         for drawn in 0..index.len() {
@@ -59,9 +55,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
             if let Some(out) = weight.as_mut().and_then(|weight| weight.get_mut(drawn)) {
                 *out = ((1.0 / chance + (batch - (drawn + 1) as f64)) / f64::from(items)) as f32;
             }
-            if let Some(out) = index.get_mut(drawn) {
-                *out = item;
-            }
+            set(index, drawn, item);
             self.turn(item);
             self.refresh(item);
         }

@@ -4,9 +4,9 @@ use super::importances::Table;
 use super::kernel::{ARITY, Block, Kernel, prefetch};
 use super::mixture::{Mixture, Ways};
 use super::tree::{self, CHILDREN, Levels, Node};
-use crate::Error;
+use crate::error::{Error, ensure};
 use crate::rng::{Rng, split_mix};
-use crate::rows::{from, halves};
+use crate::rows::{from, halves, set};
 
 /// How many draws go down the tree together: enough to hide the latency of memory, few enough for the first cache.
 pub(super) const CHUNK: usize = 64;
@@ -150,9 +150,7 @@ impl Descent<'_> {
             let Some(block) = self.blocks.get(place as usize) else { continue };
             let (item, sum) = K::find_item(block, fraction);
             (*total, *q) = (sum, block[item % ARITY]);
-            if let Some(out) = index.get_mut(slot as usize) {
-                *out = place * ARITY as u32 + item as u32;
-            }
+            set(index, slot as usize, place * ARITY as u32 + item as u32);
         }
         // Nothing to do, unless the table's memory has been damaged: whatever it holds, what is drawn exists.
         for out in index.iter_mut() {
@@ -166,9 +164,7 @@ impl Descent<'_> {
             *result = self.weight(q, total, weight);
         }
         for (&result, &slot) in results.iter().zip(&slot).take(trees) {
-            if let Some(out) = weight.get_mut(slot as usize) {
-                *out = result;
-            }
+            set(weight, slot as usize, result);
         }
         for &slot in uniform_slot.iter().take(weight.len().saturating_sub(trees)) {
             let (Some(&item), Some(out)) = (index.get(slot as usize), weight.get_mut(slot as usize)) else { continue };
@@ -235,8 +231,7 @@ const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
 /// Errors: [`Error::Range`] unless there are as many weights as indices, or none at all.
 pub(super) fn check_lengths(index: &[u32], weight: &Option<&mut [f32]>) -> Result<(), Error> {
-    let differ = weight.as_ref().is_some_and(|weight| weight.len() != index.len());
-    if differ { Err(Error::Range) } else { Ok(()) }
+    ensure(weight.as_ref().is_none_or(|weight| weight.len() == index.len()), Error::Range)
 }
 
 /// The bits of draw `k`: draws need no order.

@@ -3,7 +3,7 @@
 use super::kernel::{ARITY, Block, Kernel, Portable};
 use super::mixture::Mixture;
 use super::tree::{self, CHILDREN, Levels, MAX_BLOCKS, Node};
-use crate::error::{Error, check_part};
+use crate::error::{Error, check_part, ensure};
 use crate::real::power_of_two;
 use crate::rows::{at, first};
 use core::marker::PhantomData;
@@ -87,9 +87,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// contents are not checked: if they are not what that table left there, draws are still of items that exist, but
     /// not as often as they should be, and weights are any numbers.
     pub fn resume(importance: I, sums: S, state: State) -> Result<Self, Error> {
-        if !state.is_valid() {
-            return Err(Error::Range);
-        }
+        ensure(state.is_valid(), Error::Range)?;
         // The most blocks that the sums are for, by bisection.
         let fits = |blocks| Levels::new(blocks).nodes() * CHILDREN <= sums.as_ref().len();
         let most = (importance.as_ref().len() / ARITY).min(MAX_BLOCKS);
@@ -98,9 +96,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
             let middle = blocks + (not - blocks) / 2;
             if fits(middle) { blocks = middle } else { not = middle }
         }
-        if blocks * ARITY < state.items as usize {
-            return Err(Error::Memory);
-        }
+        ensure(blocks * ARITY >= state.items as usize, Error::Memory)?;
         Ok(Table { importance, sums, blocks, levels: Levels::new(blocks), state, kernel: PhantomData })
     }
 
@@ -162,9 +158,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// Errors: [`Error::Range`] for an item that does not exist, or fewer elements than items; [`Error::NoSamples`] as
     /// for [`Table::draw`].
     pub fn probabilities(&self, index: &[u32], probability: &mut [f32]) -> Result<(), Error> {
-        if probability.len() < index.len() {
-            return Err(Error::Range);
-        }
+        ensure(probability.len() >= index.len(), Error::Range)?;
         self.check_items(index)?;
         let mixture = self.mixture()?;
         for (out, &item) in probability.iter_mut().zip(index) {
@@ -186,7 +180,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     #[inline]
     pub fn check_items(&self, index: &[u32]) -> Result<(), Error> {
         let beyond = index.iter().fold(false, |beyond, &item| beyond | (item >= self.state.items));
-        if beyond { Err(Error::Range) } else { Ok(()) }
+        ensure(!beyond, Error::Range)
     }
 
     pub(super) fn mixture(&self) -> Result<Mixture, Error> {
@@ -220,13 +214,9 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         let state = State { scale: 1.0, items, uniform_fraction: DEFAULT_UNIFORM_FRACTION };
         let mut table = Table::resume(importance, sums, state)?;
         if let Some(values) = values {
-            if values.len() != items as usize {
-                return Err(Error::Range);
-            }
+            ensure(values.len() == items as usize, Error::Range)?;
             check_importances(values)?;
-            if values.iter().all(|&q| q == 0.0) {
-                return Err(Error::NoSamples);
-            }
+            ensure(values.iter().any(|&q| q > 0.0), Error::NoSamples)?;
         }
         let memory = table.clear();
         match values {
@@ -251,9 +241,6 @@ pub fn check_importances(values: &[f32]) -> Result<(), Error> {
     // No early end: compilers check eight at a time.
     let (finite, negative) =
         values.iter().fold((true, false), |(finite, negative), &q| (finite & q.is_finite(), negative | (q < 0.0)));
-    match (finite, negative) {
-        (false, _) => Err(Error::NotFinite),
-        (true, true) => Err(Error::Range),
-        (true, false) => Ok(()),
-    }
+    ensure(finite, Error::NotFinite)?;
+    ensure(!negative, Error::Range)
 }

@@ -5,8 +5,8 @@
 
 use super::importances::{State, Table};
 use super::kernel::{Kernel, Portable};
-use crate::Error;
 use crate::checksum::crc;
+use crate::error::{Error, ensure};
 use crate::matrix::{copy, first, from, from_mut};
 
 /// Bytes before the importances.
@@ -29,9 +29,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// Errors: [`Error::Length`] for another number of bytes.
     pub fn save(&self, bytes: &mut [u8]) -> Result<(), Error> {
         let State { scale, items, uniform_fraction } = self.state;
-        if bytes.len() != saved_len(items) {
-            return Err(Error::Length);
-        }
+        ensure(bytes.len() == saved_len(items), Error::Length)?;
         let (scale, fraction) = (scale.to_le_bytes(), uniform_fraction.to_le_bytes());
         let fields = [&MAGIC[..], &VERSION.to_le_bytes(), &items.to_le_bytes(), &scale, &fraction];
         bytes.iter_mut().zip(fields.into_iter().flatten()).for_each(|(to, &from)| *to = from);
@@ -49,9 +47,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
 /// [`Error::Corrupt`] for a version or a number of items that no table has.
 pub fn saved_items(bytes: &[u8]) -> Result<u32, Error> {
     // Not by `starts_with`, which may call bcmp: a freestanding target need not have that.
-    if bytes.iter().zip(&MAGIC).any(|(byte, magic)| byte != magic) {
-        return Err(Error::Foreign);
-    }
+    ensure(bytes.iter().zip(&MAGIC).all(|(byte, magic)| byte == magic), Error::Foreign)?;
     let (version, items) = (u32::from_le_bytes(field(bytes, 8)?), u32::from_le_bytes(field(bytes, 12)?));
     match (version, items) {
         (0, _) | (VERSION, 0) => Err(Error::Corrupt),
@@ -83,7 +79,8 @@ fn check(bytes: &[u8]) -> Result<State, Error> {
     let sound = u32::from_le_bytes(field(bytes, CHECKSUM)?) == checksum(bytes)
         && state.is_valid()
         && values(bytes).all(|q| q.is_finite() && q.is_sign_positive());
-    if sound { Ok(state) } else { Err(Error::Corrupt) }
+    ensure(sound, Error::Corrupt)?;
+    Ok(state)
 }
 
 fn values(bytes: &[u8]) -> impl Iterator<Item = f32> {

@@ -4,7 +4,7 @@ use super::draw::{CHUNK, check_lengths, noise};
 use super::importances::Table;
 use super::kernel::Kernel;
 use super::mixture::{Mixture, shares};
-use crate::error::{Error, check_part};
+use crate::error::{Error, check_part, ensure};
 use crate::real::Real;
 use crate::rng::Rng;
 
@@ -25,20 +25,14 @@ impl Shard {
     pub fn sum(shards: impl IntoIterator<Item = Shard>) -> Result<Shard, Error> {
         let mut all = Shard::default();
         for shard in shards {
-            if !shard.importance.is_finite() {
-                return Err(Error::NotFinite);
-            }
+            ensure(shard.importance.is_finite(), Error::NotFinite)?;
             let items = all.items.saturating_add(shard.items);
-            if shard.importance < 0.0 || items >= 1 << 53 {
-                return Err(Error::Range);
-            }
+            ensure(shard.importance >= 0.0 && items < 1 << 53, Error::Range)?;
             all = Shard { importance: all.importance + shard.importance, items };
         }
-        match (all.importance.is_finite(), all.items) {
-            (false, _) => Err(Error::NotFinite),
-            (true, 0) => Err(Error::NoSamples),
-            (true, _) => Ok(all),
-        }
+        ensure(all.importance.is_finite(), Error::NotFinite)?;
+        ensure(all.items > 0, Error::NoSamples)?;
+        Ok(all)
     }
 
     /// The probability that a draw from `all` falls to this part by importance, and uniformly.
@@ -78,9 +72,7 @@ pub fn allocate(
     counts: &mut [u32],
 ) -> Result<(), Error> {
     check_part(uniform_fraction)?;
-    if shards.clone().count() != counts.len() {
-        return Err(Error::Range);
-    }
+    ensure(shards.clone().count() == counts.len(), Error::Range)?;
     let all = Shard::sum(shards.clone())?;
     let fraction = f64::from(uniform_fraction);
     let share = |shard: Shard| shard.ways(&all, fraction).map(|(tree, uniform)| tree + uniform);
@@ -130,22 +122,17 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
         weight: Option<&mut [f32]>,
     ) -> Result<(), Error> {
         check_lengths(index, &weight)?;
-        if !all.importance.is_finite() {
-            return Err(Error::NotFinite);
-        }
+        ensure(all.importance.is_finite(), Error::NotFinite)?;
         let own = self.shard();
-        if all.items < own.items || all.items >= 1 << 53 || all.importance < own.importance {
-            return Err(Error::Range);
-        }
+        let has_own = all.items >= own.items && all.importance >= own.importance;
+        ensure(has_own && all.items < 1 << 53, Error::Range)?;
         let (tree, uniform) = own.ways(all, f64::from(self.state.uniform_fraction))?;
         let share = tree + uniform;
         // What `allocate` asks of a table from which nothing can be drawn.
         if index.is_empty() {
             return Ok(());
         }
-        if share <= 0.0 {
-            return Err(Error::NoSamples);
-        }
+        ensure(share > 0.0, Error::NoSamples)?;
         let mixture = Mixture::of(self.sum(), self.state.items, uniform / share)?;
         self.draw_mixture::<CHUNK>(&mixture, share * all.items as f64, rng, index, weight, noise);
         Ok(())

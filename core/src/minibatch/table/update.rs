@@ -3,7 +3,7 @@
 use super::importances::{Table, check_importances};
 use super::kernel::{ARITY, Block, Kernel, Portable, prefetch};
 use super::tree::{self, CHILDREN, Node};
-use crate::error::{Error, check_part};
+use crate::error::{Error, check_part, ensure};
 use crate::real::power_of_two;
 use crate::rows::{first_mut, from};
 
@@ -32,9 +32,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     pub fn update(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
         check_importances(importance)?;
         check_part(momentum)?;
-        if index.len() != importance.len() {
-            return Err(Error::Range);
-        }
+        ensure(index.len() == importance.len(), Error::Range)?;
         self.check_items(index)?;
         // -0 would make importances of -0, a sign that stands for items taken out.
         let momentum = momentum + 0.0;
@@ -60,9 +58,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     pub fn append(&mut self, importance: &[f32]) -> Result<(), Error> {
         check_importances(importance)?;
         let room = (self.capacity() - self.state.items) as usize;
-        if importance.len() > room {
-            return Err(Error::Memory);
-        }
+        ensure(importance.len() <= room, Error::Memory)?;
         if importance.is_empty() {
             return Ok(());
         }
