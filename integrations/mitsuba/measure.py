@@ -243,11 +243,14 @@ def main():
         "errors": lambda options, out: measure_errors(options, out, pictures),
     }
     told = pathlib.Path(options.folder, "run.json")
+    run = json.loads(told.read_text()) if told.exists() else {}
     for part in options.parts.split(","):
+        # What is cut off has not been measured.
+        run.pop(part, None)
+        told.write_text(json.dumps(run))
         date, start, busy = datetime.datetime.now(datetime.timezone.utc), time.perf_counter(), time.process_time()
         with open(f"{options.folder}/{part}.csv", "w") as out:
             measures[part](options, out)
-        run = json.loads(told.read_text()) if told.exists() else {}
         seconds = {"seconds": time.perf_counter() - start, "processor_seconds": time.process_time() - busy}
         run[part] = {"date": f"{date:%Y-%m-%d}", **seconds, "machine": machine()}
         told.write_text(json.dumps(run, indent=1) + "\n")
