@@ -75,39 +75,55 @@ fn four_numbers_are_nets() {
     }
 }
 
-/// Products of centred numbers, and of their signs, of all pairs of 64 domains over the pixels of the table. Between
-/// two domains neighbours' products hardly differ less than others', so that the deviates' variance is near 1; two
-/// domains at the same place of the table, which one pair in 8,192 has, would fail. Of 16,128 normal deviates the
-/// largest is beyond 6.5 with probability 1e-6.
+/// Products of centred numbers, and of their signs, of all pairs of 64 domains, summed over a pixel's samples: over the
+/// pixels of the table their mean is 0. Its variance is the products' and the covariances of neighbours', as measured;
+/// two domains at the same place of the table, which one pair in 8,192 has, would fail. Of 16,128 normal deviates the
+/// largest is beyond 6.5 with probability 1e-6; the mean of their squares is off by 4.75 standard errors with 2e-6.
 #[test]
 fn domains_are_uncorrelated() {
     for n in [1, 4] {
-        let scale = (f64::from(PIXELS) / f64::from(n)).sqrt();
+        let domains = |pixel| (0..n).map(move |index| domains(root(pixel).moved(0, 0, index), 64));
         let mut columns: Vec<Vec<[f64; 4]>> = vec![vec![]; 64];
-        for pixel in 0..PIXELS {
-            for index in 0..n {
-                for (column, domain) in columns.iter_mut().zip(domains(root(pixel).moved(0, 0, index), 64)) {
-                    let [a, b]: [f64; 2] = domain.draw().map(|u: f32| f64::from(u) - 0.5);
-                    column.push([a * 12_f64.sqrt(), b * 12_f64.sqrt(), a.signum(), b.signum()]);
+        for (column, domain) in (0..PIXELS).flat_map(domains).flat_map(|all| all.into_iter().enumerate()) {
+            let [a, b]: [f64; 2] = domain.draw().map(|u: f32| f64::from(u) - 0.5);
+            columns[column].push([a, b, a.signum(), b.signum()]);
+        }
+        for (kind, pairs) in [("values", [(0, 0), (0, 1), (1, 0), (1, 1)]), ("signs", [(2, 2), (2, 3), (3, 2), (3, 3)])]
+        {
+            let (mut squares, mut expected) = (Moments::default(), Moments::default());
+            for (i, a) in columns.iter().enumerate() {
+                for (j, b) in columns[..i].iter().enumerate() {
+                    let mut sums = [0.0; 2];
+                    for (p, q) in pairs {
+                        let products: Vec<f64> = a.iter().zip(b).map(|(a, b)| a[p] * b[q]).collect();
+                        let products: Vec<f64> = products.chunks(n as usize).map(|pixel| pixel.iter().sum()).collect();
+                        let [alone, near] = variances(&products);
+                        let z = products.iter().sum::<f64>() / (f64::from(PIXELS) * alone).sqrt();
+                        assert!(z.abs() < 6.5, "{n}: domains {i} and {j}, {p} {q}: {z}");
+                        sums = [sums[0] + z * z / 4.0, sums[1] + near / alone / 4.0];
+                    }
+                    squares.add(sums[0]);
+                    expected.add(sums[1]);
                 }
             }
+            let (found, expected) = (squares.mean(), expected.mean());
+            println!("{n}, {kind}: {found:.3}, expected {expected:.3}, error {:.4}", squares.standard_error());
+            assert!((found - expected).abs() < 4.75 * squares.standard_error(), "{n}, {kind}: {found} of {expected}");
         }
-        let mut squares = Moments::default();
-        for (i, a) in columns.iter().enumerate() {
-            for (j, b) in columns[..i].iter().enumerate() {
-                for (p, q) in [(0, 0), (0, 1), (1, 0), (1, 1), (2, 2), (2, 3), (3, 2), (3, 3)] {
-                    let mean = a.iter().zip(b).map(|(a, b)| a[p] * b[q]).sum::<f64>() / f64::from(n * PIXELS);
-                    let z = mean * scale * f64::from(n);
-                    // Pairs of samples on either side of the middle have products of one sign.
-                    let z = if n == 1 { z } else { z / 2_f64.sqrt() };
-                    assert!(z.abs() < 6.5, "{n}: domains {i} and {j}, {p} {q}: {z}");
-                    squares.add(z * z);
-                }
-            }
-        }
-        println!("{n}: variance {:.3}", squares.mean());
-        assert!(squares.mean() < 1.5, "{n}: {}", squares.mean());
     }
+}
+
+/// Of numbers of mean 0 over the table: their variance, and with it the covariances with those up to two pixels away.
+fn variances(numbers: &[f64]) -> [f64; 2] {
+    let size = table::SIZE as usize;
+    let rows: Vec<f64> = (0..numbers.len())
+        .map(|at| (size - 2..=size + 2).map(|right| numbers[at / size * size + (at + right) % size]).sum())
+        .collect();
+    let near = |at: usize| (size - 2..=size + 2).map(|down| rows[(at + down * size) % rows.len()]).sum::<f64>();
+    let mean = |of: &dyn Fn(usize) -> f64| {
+        (0..numbers.len()).map(|at| numbers[at] * of(at)).sum::<f64>() / numbers.len() as f64
+    };
+    [mean(&|at| numbers[at]), mean(&near)]
 }
 
 /// A function of four numbers, and its integral.

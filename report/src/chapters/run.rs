@@ -111,7 +111,9 @@ fn write_one((name, write, description): &Wanted, plan: &Plan, folder: &Path, ma
         "date": date,
         "machine": machine,
     });
-    if let (Some(run), Some(earlier)) = (chapter["run"].as_object_mut(), report.earlier.get().and_then(Value::as_object)) {
+    if let (Some(run), Some(earlier)) =
+        (chapter["run"].as_object_mut(), report.earlier.get().and_then(Value::as_object))
+    {
         run.extend(earlier.clone());
     }
     let former = write_new(&output, name, &chapter)?;
@@ -121,7 +123,7 @@ fn write_one((name, write, description): &Wanted, plan: &Plan, folder: &Path, ma
 
 /// A chapter that was measured, with the pictures that were made of it; those that it shows otherwise and now has not.
 fn write_new(output: &Output, name: &str, chapter: &Value) -> Result<Vec<String>> {
-    let (pictures, former) = (output.names()?, RefCell::default());
+    let (pictures, former) = (output.names()?, RefCell::new(Vec::new()));
     let exists = |file: &str| {
         let is_new = pictures.iter().any(|picture| picture == file);
         former.borrow_mut().extend((!is_new).then(|| file.to_owned()));

@@ -153,7 +153,8 @@ mod tests {
                         ## None\n\nText.\n\n{{table t}}\n\n## Two\n\n{{table t}}\n\n![x](no.svg)\n\n![x](a.svg)";
         let text = fill(template, &json, &|file| file == "a.svg").expect("a text");
         let shown = "| a |                b |\n| - | ---------------: |\n| x | 0.250 [0.2, 0.3] |";
-        let expected = format!("# T\n\nAt 64.\n\n- 64 too\n- B\n\n## One\n\n{shown}\n\n## Two\n\n{shown}\n\n![x](a.svg)\n");
+        let expected =
+            format!("# T\n\nAt 64.\n\n- 64 too\n- B\n\n## One\n\n{shown}\n\n## Two\n\n{shown}\n\n![x](a.svg)\n");
         assert_eq!(text, expected);
         assert!(fill("# T\n\n## One\n\n{{table t}}", &json, &|_| true).is_err(), "a table that is not shown");
     }

@@ -53,7 +53,11 @@ impl Output {
     pub(crate) fn commit(self, former: &[String]) -> Result<()> {
         let move_all = || -> Result<()> {
             fs::create_dir_all(&self.folder)?;
-            former.iter().map(|name| self.folder.join(name)).filter(|path| path.exists()).try_for_each(fs::remove_file)?;
+            former
+                .iter()
+                .map(|name| self.folder.join(name))
+                .filter(|path| path.exists())
+                .try_for_each(fs::remove_file)?;
             for name in self.names()? {
                 fs::rename(self.pending.path().join(&name), self.folder.join(&name))?;
             }
