@@ -823,5 +823,6 @@ fn control_functions_that_never_move_change_nothing() {
         batch_of::<f64>(&config, Samples { u: &u, f: &f, controls: &h, control_integrals: &integral }).unwrap()
     };
     let without = batch::<f64>(&Config { controls: 0, ..config }, &u, &f).unwrap();
-    assert_eq!((of(1.0), of(1e6)), (without, without));
+    // But for the degree of freedom that it takes.
+    assert_eq!((of(1.0), of(1.0).mean), (of(1e6), without.mean));
 }
