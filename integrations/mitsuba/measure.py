@@ -1,5 +1,5 @@
-"""What the report's chapter is made of: times.csv, gradients.csv, fits.csv, errors.csv and pictures.png in a folder, and
-run.json: when, how long and on what each was measured. With all parts in it, NOISEFLOOR_MITSUBA=FOLDER gives it to
+"""What the report's chapter is made of: times.csv, gradients.csv, fits.csv, errors.csv and pictures.png in a folder,
+and run.json: when, how long and on what each was measured. With all parts in it, NOISEFLOOR_MITSUBA=FOLDER gives it to
 `cargo xtask report --only mitsuba`.
 
 python3 measure.py FOLDER [--parts times,gradients,fits,errors] [--scenes cornell,...] [--size 128] [--seeds 32]

@@ -90,8 +90,8 @@ fn uniforms_are_uniform_and_below_one() {
     }
 }
 
-/// Counts that are the same but for chance. Of two or three cells, whose chi-square is no normal deviate, each count is:
-/// binomial of so many draws.
+/// Counts that are the same but for chance. Of two or three cells, whose chi-square is no normal deviate, each count
+/// is: binomial of so many draws.
 fn assert_even(counts: &[u64]) {
     let (draws, share) = (counts.iter().sum::<u64>() as f64, 1.0 / counts.len() as f64);
     let deviation = (draws * share * (1.0 - share)).sqrt();

@@ -46,8 +46,8 @@ fn columns_of_text(line: &str) -> usize {
     if is_whole { 0 } else { first + rest.sum::<usize>() }
 }
 
-/// Checks the links of all documents: each must lead to what git knows, and to a heading in it. Templates are checked as
-/// docs/report/ has them, filled in.
+/// Checks the links of all documents: each must lead to what git knows, and to a heading in it. Templates are checked
+/// as docs/report/ has them, filled in.
 pub fn links() -> Result<()> {
     let files = tracked()?;
     let known: BTreeSet<&Path> = files.iter().flat_map(|name| Path::new(name).ancestors()).collect();
