@@ -78,8 +78,8 @@ fn four_numbers_are_nets() {
 /// Products of centred numbers, and of their signs, of all pairs of 64 domains, summed over a pixel's samples: over the
 /// table's pixels their mean is 0, and varies as that of domains which lie anywhere to each other, as one of each pair
 /// does where it is moved over the table. Two domains at the same place, which one pair in 8,192 has, would fail. Of
-/// 16,128 normal deviates the largest is beyond 6.5 with probability 1e-6; the means of their squares are 4.75 standard
-/// errors apart with 2e-6.
+/// 16,128 normal deviates of variance 1.2 the largest is beyond 6.5 with probability 5e-5; the means of their squares
+/// are 4.75 standard errors apart with 2e-6.
 #[test]
 fn domains_are_uncorrelated() {
     for n in [1, 4] {
