@@ -74,7 +74,7 @@ fn over_scenes(errors: &Table) -> Result<Table> {
     let mut all = Table::new("over scenes", "error | spp | ratio | ratio_low | ratio_high");
     let samplers = errors.distinct("sampler")?;
     for (error, spp) in iproduct!(["raw", "denoised"], errors.distinct("spp")?) {
-        let mut scenes: Vec<(f64, Vec<f64>)> = Vec::new();
+        let (mut logarithms, mut off): (Vec<f64>, Vec<Vec<f64>>) = Default::default();
         for scene in errors.distinct("scene")? {
             let of = |sampler| errors.of(&[("scene", scene), ("spp", spp), ("sampler", sampler)]).numbers(error);
             let own = of(DEFAULT)?;
@@ -84,12 +84,14 @@ fn over_scenes(errors: &Table) -> Result<Table> {
             let others = others.iter().filter(|of| !of.is_empty()).map(|of| (moments(of).0, of));
             let Some((best, numbers)) = others.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
             let mean = moments(&own).0;
-            scenes.push(((mean / best).ln(), own.iter().zip(numbers).map(|(a, b)| a / mean - b / best).collect()));
+            logarithms.push((mean / best).ln());
+            off.push(own.iter().zip(numbers).map(|(a, b)| a / mean - b / best).collect());
         }
-        let seeds = scenes.iter().map(|(_, off)| off.len()).min().unwrap_or(0);
-        let mean = |of: &dyn Fn(&(f64, Vec<f64>)) -> f64| scenes.iter().map(of).sum::<f64>() / scenes.len() as f64;
-        let logarithm = mean(&|(logarithm, _)| *logarithm);
-        let each: Vec<f64> = (0..seeds).map(|seed| logarithm + mean(&|(_, off)| off[seed])).collect();
+        let seeds = off.iter().map(Vec::len).min().unwrap_or(0);
+        let mean = |numbers: &[f64]| numbers.iter().sum::<f64>() / numbers.len() as f64;
+        let logarithm = mean(&logarithms);
+        let of = |seed: usize| mean(&off.iter().map(|off| off[seed]).collect::<Vec<_>>());
+        let each: Vec<f64> = (0..seeds).map(|seed| logarithm + of(seed)).collect();
         let Estimate { low, high, .. } = Estimate::mean(&each);
         let ends = [logarithm, low, high].map(|end| end.exp().to_string());
         all.push([error, spp].into_iter().chain(ends.iter().map(String::as_str)));
