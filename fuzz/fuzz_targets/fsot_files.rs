@@ -1,4 +1,4 @@
-//! The optimiser's files: any bytes as a checkpoint, a class file or a tile are an error or a result, never a panic.
+//! The optimiser's files: any bytes as a checkpoint or a class file are an error or a result, never a panic.
 //!
 //! Few random bytes have the right checksum, so checkpoints are also read with theirs put right.
 #![no_main]

@@ -1,10 +1,17 @@
-"""What the report's chapter is made of: times.csv, gradients.csv, fits.csv, errors.csv and pictures.png in a folder.
+"""What the report's chapter is made of: times.csv, gradients.csv, fits.csv, errors.csv and pictures.png in a folder,
+and run.json: when, how long and on what each was measured. With all parts in it, NOISEFLOOR_MITSUBA=FOLDER gives it to
+`cargo xtask report --only mitsuba`.
 
 python3 measure.py FOLDER [--parts times,gradients,fits,errors] [--scenes cornell,...] [--size 128] [--seeds 32]
     [--reference 4096] [--frames 4096] [--rounds 15] [--scalar build]
 """
 
 import argparse
+import datetime
+import json
+import os
+import pathlib
+import platform
 import time
 
 import drjit as dr
@@ -208,6 +215,14 @@ def measure_times(options, out, spp=16):
     mi.set_variant(variant)
 
 
+def machine():
+    """As the report's index tells them apart."""
+    lines = pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+    models = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+    kernel = f"{platform.system().lower()} {platform.release()}"
+    return {"processor": next(models, platform.machine()), "cores": len(os.sched_getaffinity(0)), "kernel": kernel}
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("folder")
@@ -227,9 +242,18 @@ def main():
         "fits": measure_fits,
         "errors": lambda options, out: measure_errors(options, out, pictures),
     }
+    told = pathlib.Path(options.folder, "run.json")
+    run = json.loads(told.read_text()) if told.exists() else {}
     for part in options.parts.split(","):
+        # What is cut off has not been measured.
+        run.pop(part, None)
+        told.write_text(json.dumps(run))
+        date, start, busy = datetime.datetime.now(datetime.timezone.utc), time.perf_counter(), time.process_time()
         with open(f"{options.folder}/{part}.csv", "w") as out:
             measures[part](options, out)
+        seconds = {"seconds": time.perf_counter() - start, "processor_seconds": time.process_time() - busy}
+        run[part] = {"date": f"{date:%Y-%m-%d}", **seconds, "machine": machine()}
+        told.write_text(json.dumps(run, indent=1) + "\n")
     if pictures:
         mi.util.write_bitmap(f"{options.folder}/pictures.png", np.concatenate(pictures, 0).astype(np.float32))
 

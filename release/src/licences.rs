@@ -12,18 +12,21 @@ use xtask::{paths, run};
 const ALLOWED: [&str; 10] =
     ["0BSD", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "BSL-1.0", "ISC", "MIT", "Unicode-3.0", "Unlicense", "Zlib"];
 /// What may also be in programs that only build and test, which nobody is given.
-const ALLOWED_IN_DEVELOPMENT: [&str; 1] = ["MPL-2.0"];
+const ALLOWED_IN_DEVELOPMENT: [&str; 2] = ["MPL-2.0", "NCSA"];
+/// Workspaces of their own: the page to play with, which is given away, and the fuzz targets.
+const PAGE: &str = "docs/playground/Cargo.toml";
+const FUZZ: &str = "fuzz/Cargo.toml";
 
 const INTRODUCTION: &str = "\
 # Packages of others
 
 Written by `cargo xtask licences`; do not edit. Licences are as their authors declare them, for all targets; the full
-texts come with each package's source. A test compares this file with Cargo.lock, and every licence with those that
+texts come with each package's source. A test compares this file with each Cargo.lock, and every licence with those that
 release/src/licences.rs allows.
 ";
 const STANDARD_LIBRARY: &str = "
-The C library also holds what it uses of Rust's `core` (MIT OR Apache-2.0) and compiler-builtins (MIT AND
-Apache-2.0 WITH LLVM-exception AND (MIT OR Apache-2.0)), of the compiler that built it.
+The C library and the page also hold what they use of Rust's `core` (MIT OR Apache-2.0) and compiler-builtins (MIT AND
+Apache-2.0 WITH LLVM-exception AND (MIT OR Apache-2.0)), of the compiler that built them.
 ";
 
 /// Name and version, and licence.
@@ -43,14 +46,17 @@ pub(crate) fn check() -> Result<()> {
 }
 
 fn current() -> Result<String> {
-    let library = packages(&["--package", PUBLISHED[0], "--package", PUBLISHED[1], "--edges", "normal,build"])?;
+    let mut library = packages(&["--package", PUBLISHED[0], "--package", PUBLISHED[1], "--edges", "normal,build"])?;
+    library.extend(packages(&["--manifest-path", PAGE, "--edges", "normal,build"])?);
     let optimiser = packages(&["--package", PUBLISHED[2], "--edges", "normal,build"])?;
-    let all = packages(&["--workspace", "--edges", "normal,build,dev"])?;
+    let mut all = packages(&["--workspace", "--edges", "normal,build,dev"])?;
+    all.extend(packages(&["--manifest-path", FUZZ, "--all-features", "--edges", "normal,build,dev"])?);
     allowed(&library, &ALLOWED)?;
     allowed(&optimiser, &ALLOWED)?;
     allowed(&all, &[&ALLOWED[..], &ALLOWED_IN_DEVELOPMENT].concat())?;
     let mut text = INTRODUCTION.to_owned();
-    text += &section("In the library (`noisefloor`) and the C library made of it", &library, &Packages::new());
+    let title = "In the library (`noisefloor`), the C library made of it and the page to play with";
+    text += &section(title, &library, &Packages::new());
     text += STANDARD_LIBRARY;
     text += &section("In `fsot` besides, or needed to compile it", &optimiser, &library);
     let shipped = library.into_iter().chain(optimiser).collect();

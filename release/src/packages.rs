@@ -1,6 +1,7 @@
 //! What would be published is complete, and versions are the same wherever they are said.
 
 use anyhow::{Context, Result, bail};
+use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -33,7 +34,7 @@ pub(crate) fn check() -> Result<()> {
     Ok(())
 }
 
-fn check_one(name: &str, package: &serde_json::Value) -> Result<()> {
+fn check_one(name: &str, package: &Value) -> Result<()> {
     let text = |key: &str| package[key].as_str().with_context(|| format!("{name}: no `{key}` in its Cargo.toml"));
     for key in ["description", "license", "rust_version"] {
         text(key)?;
@@ -79,8 +80,8 @@ fn files(folder: &Path, below: &Path, found: &mut BTreeSet<PathBuf>) -> Result<(
 /// Texts that name the oldest Rust that compiles the project.
 const NAME_RUST: [&str; 2] = ["README.md", "docs/install.md"];
 
-/// The declared Rust version is what the texts say and compiles the libraries; CHANGELOG.md knows the project's
-/// version, and whoever asks CMake for one asks for it.
+/// The declared Rust version is what the texts say and compiles what is published; CHANGELOG.md knows the project's
+/// version, and whoever asks CMake or cargo for one asks for it.
 pub(crate) fn versions() -> Result<()> {
     let packages = run::packages()?;
     let core = packages.iter().find(|package| package["name"] == "noisefloor").context("there is no `noisefloor`")?;
@@ -98,6 +99,7 @@ pub(crate) fn versions() -> Result<()> {
         }
     }
     let version = core["version"].as_str().context("`noisefloor` has no version")?;
+    pins(&packages, version)?;
     if !paths::read("CHANGELOG.md")?.lines().any(|line| line.split(' ').take(2).eq(["##", version])) {
         bail!("CHANGELOG.md has no section `## {version}`, which is the version in Cargo.toml");
     }
@@ -108,6 +110,25 @@ pub(crate) fn versions() -> Result<()> {
         bail!("{other}: it must be {short}, as the version in Cargo.toml is {version}");
     }
     compiles(rust)
+}
+
+/// Whatever is published has the version, and asks for what else is published in the same one, or, for tests alone, in
+/// any.
+fn pins(packages: &[Value], version: &str) -> Result<()> {
+    let is_ours = |package: &Value| PUBLISHED.iter().any(|name| package["name"] == *name);
+    for package in packages.iter().filter(|package| is_ours(package)) {
+        let name = &package["name"];
+        if package["version"] != version {
+            bail!("{name} has the version {}, `noisefloor` {version}", package["version"]);
+        }
+        let others = paths::elements(&package["dependencies"]).iter().filter(|other| is_ours(other));
+        for other in others.filter(|other| other["kind"] != "dev" || other["req"] != "*") {
+            if other["req"] != format!("^{version}") {
+                bail!("{name} asks for {} {}, and the version is {version}", other["name"], other["req"]);
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Compiles what is published with the declared version, if that is at hand.
@@ -123,11 +144,32 @@ fn compiles(rust: &str) -> Result<()> {
         )));
     }
     let mut check = run::command("rustup");
-    check.args(["run", rust, "cargo", "check", "--quiet", "--locked", "--package", "noisefloor", "--package"]);
-    run::check(check.args(["noisefloor-capi", "--target-dir"]).arg(paths::target().join("declared")))
+    check.args(["run", rust, "cargo", "check", "--quiet", "--locked", "--target-dir"]);
+    check.arg(paths::target().join("declared"));
+    run::check(check.args(PUBLISHED.iter().flat_map(|name| ["--package", name])))
 }
 
 /// The digits at the beginning.
 fn minor(text: &str) -> &str {
     text.split(|c: char| !c.is_ascii_digit()).next().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::pins;
+    use serde_json::json;
+
+    #[test]
+    fn what_is_published_asks_for_its_own_version() {
+        let with = |version: &str, req: &str, kind: Option<&str>| {
+            let other = json!({"name": "noisefloor", "req": req, "kind": kind});
+            let strange = json!({"name": "libm", "req": "^9", "kind": null});
+            let capi = json!({"name": "noisefloor-capi", "version": version, "dependencies": [strange, other]});
+            let bench = json!({"name": "noisefloor-bench", "version": "0.0.0", "dependencies": [other]});
+            pins(&[capi, bench], "0.2.0").is_ok()
+        };
+        assert!(with("0.2.0", "^0.2.0", None) && with("0.2.0", "*", Some("dev")));
+        assert!(!with("0.2.0", "^0.1.0", None) && !with("0.2.0", "*", None) && !with("0.2.0", "^0.1.0", Some("dev")));
+        assert!(!with("0.1.0", "^0.2.0", None));
+    }
 }

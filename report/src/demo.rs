@@ -71,8 +71,12 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let output = Output::new(&folder)?;
     println!("rendering");
     scenes(options, &renderer, &output)?;
-    output.commit()?;
-    match page.map_err(|_| anyhow!("the page's build was lost"))? {
+    // The page may be built where it is shown.
+    let page = page.map_err(|_| anyhow!("the page's build was lost"))?;
+    let is_there = |file: &str| file == PAGE && page.as_ref().is_ok_and(|page| *page == folder.join(PAGE));
+    let shown = SHOWN.iter().map(|(file, _)| *file).filter(|file| !is_there(file)).map(str::to_owned);
+    output.commit(&shown.collect::<Vec<_>>())?;
+    match page {
         Ok(page) if page != folder.join(PAGE) => {
             fs::copy(&page, folder.join(PAGE)).with_context(|| format!("cannot copy {}", page.display()))?;
         }
@@ -128,7 +132,7 @@ fn scenes(options: &Options, renderer: &Renderer, output: &Output) -> Result<()>
     Ok(())
 }
 
-/// What `index.html` shows, if it is there already.
+/// What `index.html` shows, if it is there already; none of it is left of an earlier run.
 const SHOWN: [(&str, &str); 6] = [
     ("shared.png", "Samplers and shared fits at equal samples: each image with its error below"),
     ("gradients-digits-time.svg", "Test error of small digits against seconds of training"),

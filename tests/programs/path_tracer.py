@@ -1,6 +1,7 @@
 """The test of examples_c/pathtracer.cpp: what it lists, what it promises of its options, and what it refuses."""
 
 import array
+import shutil
 import sys
 from program import ROOT, PathTracer, block, require, say, squared_error
 
@@ -21,6 +22,7 @@ def main():
         check_scene(scene, estimators, samplers)
     for name in filters:
         check_filter(name)
+    check_samplers(samplers)
     for check in [lambda: check_tiles(tiles), check_seeds, check_table, check_accumulation, check_two_techniques]:
         check()
     tracer.refuses_each(
@@ -84,6 +86,23 @@ def check_scene(scene, estimators, samplers):
         tracer.compare(f"{scene}, {sampler}", ["mc", "shared", "robust"], expected)
 
 
+def check_samplers(samplers):
+    """Each draws as `--sampler` says: pictures of its own, and but for random ones of clearly less error."""
+    say(f"errors of samplers: {', '.join(samplers)}")
+    tracer.render(*"--scene direct --spp 256 --reference".split())
+    reference, pictures = tracer.values("reference"), {}
+    for sampler in samplers:
+        options = "--scene direct --spp 16 --estimators mc --sampler".split()
+        tracer.render(*options, sampler, "--table", table)
+        pictures[sampler] = tracer.values("mc")
+    require(len(set(map(tuple, pictures.values()))) == len(samplers), "two samplers make the same picture")
+    errors = {sampler: squared_error(picture, reference) for sampler, picture in pictures.items()}
+    say(", ".join(f"{sampler} {error / errors['random']:.3f}" for sampler, error in errors.items()))
+    for sampler in samplers:
+        ratio = errors[sampler] / errors["random"]
+        require(sampler == "random" or ratio <= 0.2, f"{sampler}: the squared error is {ratio} times random samples'")
+
+
 def check_filter(name):
     say(f"filter {name}")
     options = ["--scene", "direct", "--filter", name]
@@ -94,16 +113,19 @@ def check_filter(name):
 
 
 def check_tiles(tiles):
-    """Every tile by its name and by its file: the same picture."""
+    """Every tile by its name and by its file: the same picture, which no other tile makes."""
     say(f"tiles: {', '.join(tiles)}")
+    pictures = set()
     for tile in tiles:
         options = "--scene lens --spp 2 --estimators mc --sampler tile --tile".split()
         tracer.render(*options, tile)
-        expected = tracer.brightness("mc")
+        expected = tracer.values("mc")
         file = ROOT / f"core/tiles/{tile}.nft"
         require(file.exists(), f"the library carries {tile}, but there is no {file}")
         tracer.render(*options, file)
-        require(tracer.brightness("mc") == expected, f"{tile} and {file} draw different samples")
+        require(tracer.values("mc") == expected, f"{tile} and {file} draw different samples")
+        pictures.add(tuple(expected))
+    require(len(pictures) == len(tiles), f"{len(tiles)} tiles make {len(pictures)} pictures")
 
 
 def write_table():
@@ -169,25 +191,25 @@ def check_two_techniques():
 def check_seeds():
     """Several seeds in one run are what single runs make, and statistics are those of the pictures."""
     say("seeds, statistics")
-    options = "--scene lights --spp 2 --estimators mc,shared".split()
+    options, half = "--scene lights --spp 2 --estimators mc,shared".split(), tracer.folder / "half.pfm"
     for sampler in ["random", "sobol", "tile"]:
         several = [*options, "--seed", 7, "--sampler", sampler, "--seeds", 3]
         tracer.render(*several)
-        brightness = []
-        for seed in [7, 8, 9]:
-            brightness.append(tracer.brightness(f"shared.{seed}"))
+        pictures = [[tracer.values(f"{name}.{seed}") for seed in [7, 8, 9]] for name in ["mc", "shared"]]
+        shutil.copy(tracer.picture("mc.8"), half)
+        for seed, picture in zip([7, 8, 9], pictures[1]):
             tracer.render(*options, "--sampler", sampler, "--seed", seed)
-            same = tracer.picture("shared").read_bytes() == tracer.picture(f"shared.{seed}").read_bytes()
+            same = tracer.values("shared").tobytes() == picture.tobytes()
             require(same, f"{sampler}: seed {seed} alone and among others make different pictures")
+        brightness = [sum(picture) / len(picture) for picture in pictures[1]]
         require(brightness[0] != brightness[1], f"{sampler}: seeds 7 and 8 make the same picture")
-        half = tracer.picture("mc.8")
         tracer.render(*several, "--statistics", f"{half},{half}")
         mean, expected = tracer.brightness("shared.mean"), sum(brightness) / 3
         require(
             abs(mean - expected) <= 1e-5 * expected,
             f"{sampler}: the mean picture's mean is {mean}, that of the three pictures {expected}",
         )
-        a, b, c = (tracer.values(f"mc.{seed}") for seed in [7, 8, 9])
+        a, b, c = pictures[0]
         measured, expected = tracer.brightness("mc.mse"), (squared_error(a, b) + squared_error(c, b)) / 3
         require(
             abs(measured - expected) <= 1e-4 * expected,

@@ -86,6 +86,9 @@ class PathTracer(Program):
     SIZE = 32  # pixels on a side
 
     def draw(self, *options):
+        # What an earlier run wrote must not pass for what this one does.
+        for earlier in self.folder.glob("picture.*"):
+            earlier.unlink()
         size = str(self.SIZE)
         return self.start("--width", size, "--height", size, *options, "--output", self.folder / "picture")
 

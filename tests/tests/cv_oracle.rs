@@ -298,6 +298,12 @@ fn control_functions_are_integrated_exactly() {
             }
         }
     }
+    // Of an incremental estimate with one fit at a time, whose first is to the first two, all samples but these.
+    let alone = Config { controls: 1, ridge: Ridge::Fixed(0.01), ..config(2, 0, Estimator::Incremental) };
+    let f: Vec<f32> = first.iter().map(|h| 3.0 * h).collect();
+    let samples = Samples { u: &u, f: &f, controls: &first, control_integrals: &integrals[..1] };
+    let expected = (f64::from(f[0] + f[1]) + 38.0 * 0.5625) / 40.0;
+    close(&batch_of::<f64>(&alone, samples).unwrap(), expected, &f, 2e-6, "incremental");
 }
 
 /// Rows of a longer path: what lies between a row's first coordinates and the next row has no influence, and the last

@@ -75,39 +75,58 @@ fn four_numbers_are_nets() {
     }
 }
 
-/// Products of centred numbers, and of their signs, of all pairs of 64 domains over the pixels of the table. Between
-/// two domains neighbours' products hardly differ less than others', so that the deviates' variance is near 1; two
-/// domains at the same place of the table, which one pair in 8,192 has, would fail. Of 16,128 normal deviates the
-/// largest is beyond 6.5 with probability 1e-6.
+/// Products of centred numbers, and of their signs, of all pairs of 64 domains, summed over a pixel's samples: over the
+/// table's pixels their mean is 0, and varies as that of domains which lie anywhere to each other, as one of each pair
+/// does where it is moved over the table. Two domains at the same place, which one pair in 8,192 has, would fail. Of
+/// 16,128 normal deviates of variance 1.2 the largest is beyond 6.5 with probability 5e-5; the means of their squares
+/// are 4.75 standard errors apart with 2e-6.
 #[test]
 fn domains_are_uncorrelated() {
     for n in [1, 4] {
-        let scale = (f64::from(PIXELS) / f64::from(n)).sqrt();
         let mut columns: Vec<Vec<[f64; 4]>> = vec![vec![]; 64];
-        for pixel in 0..PIXELS {
-            for index in 0..n {
-                for (column, domain) in columns.iter_mut().zip(domains(root(pixel).moved(0, 0, index), 64)) {
-                    let [a, b]: [f64; 2] = domain.draw().map(|u: f32| f64::from(u) - 0.5);
-                    column.push([a * 12_f64.sqrt(), b * 12_f64.sqrt(), a.signum(), b.signum()]);
-                }
+        for (pixel, index) in (0..PIXELS).flat_map(|pixel| (0..n).map(move |index| (pixel, index))) {
+            for (column, domain) in columns.iter_mut().zip(domains(root(pixel).moved(0, 0, index), 64)) {
+                let [a, b]: [f64; 2] = domain.draw().map(|u: f32| f64::from(u) - 0.5);
+                column.push([a, b, a.signum(), b.signum()]);
             }
         }
-        let mut squares = Moments::default();
+        let (mut rng, mut squares) = (SplitMix64::new(5), [Moments::default(); 2]);
         for (i, a) in columns.iter().enumerate() {
             for (j, b) in columns[..i].iter().enumerate() {
-                for (p, q) in [(0, 0), (0, 1), (1, 0), (1, 1), (2, 2), (2, 3), (3, 2), (3, 3)] {
-                    let mean = a.iter().zip(b).map(|(a, b)| a[p] * b[q]).sum::<f64>() / f64::from(n * PIXELS);
-                    let z = mean * scale * f64::from(n);
-                    // Pairs of samples on either side of the middle have products of one sign.
-                    let z = if n == 1 { z } else { z / 2_f64.sqrt() };
-                    assert!(z.abs() < 6.5, "{n}: domains {i} and {j}, {p} {q}: {z}");
-                    squares.add(z * z);
+                let here = deviates(a, b, n, [0, 0]);
+                assert!(here.iter().all(|z| z.abs() < 6.5), "{n}: domains {i} and {j}: {here:?}");
+                // Not onto the same place.
+                let mut moved = [f64::INFINITY; 8];
+                while moved.iter().any(|z| z.abs() >= 6.5) {
+                    moved = deviates(a, b, n, [0; 2].map(|_| rng.below(table::SIZE as usize)));
+                }
+                for (moments, deviates) in squares.iter_mut().zip([here, moved]) {
+                    moments.add(deviates.iter().map(|z| z * z).sum::<f64>() / 8.0);
                 }
             }
         }
-        println!("{n}: variance {:.3}", squares.mean());
-        assert!(squares.mean() < 1.5, "{n}: {}", squares.mean());
+        let [here, moved] = squares.map(|of| of.mean());
+        let error = squares[0].standard_error().hypot(squares[1].standard_error());
+        println!("{n}: variance {here:.3}, moved {moved:.3}, standard error {error:.4}");
+        assert!((here - moved).abs() < 4.75 * error, "{n}: {here} and {moved}");
     }
+}
+
+/// Of the sums over pixels' samples of products of the first two and of the last two numbers of two domains, the second
+/// moved over the table: over the pixels their mean in units of what their own spread makes of it.
+fn deviates(a: &[[f64; 4]], b: &[[f64; 4]], n: u32, by: [usize; 2]) -> [f64; 8] {
+    let (size, n) = (table::SIZE as usize, n as usize);
+    let mut sums = [[0.0; 2]; 8];
+    for (pixel, a) in a.chunks(n).enumerate() {
+        let other = (pixel / size + by[1]) % size * size + (pixel + by[0]) % size;
+        let mut products = [0.0; 8];
+        for (a, b) in a.iter().zip(&b[other * n..]) {
+            let pairs = [(0, 0), (0, 1), (1, 0), (1, 1), (2, 2), (2, 3), (3, 2), (3, 3)];
+            products.iter_mut().zip(pairs).for_each(|(sum, (p, q))| *sum += a[p] * b[q]);
+        }
+        sums.iter_mut().zip(products).for_each(|(sums, x)| *sums = [sums[0] + x, sums[1] + x * x]);
+    }
+    sums.map(|[sum, squares]| sum / squares.sqrt())
 }
 
 /// A function of four numbers, and its integral.

@@ -86,7 +86,7 @@ fn squared_length(d: Vec3) -> f64 {
 /// Beyond 4.265 has probability 1e-5.
 fn assert_uniform(name: &str, counts: &[u64]) {
     let z = uniform_z(counts);
-    assert!(z < 4.265, "{name}: chi-square z = {z:.2}");
+    assert!(z.abs() < 4.265, "{name}: chi-square z = {z:.2}");
 }
 
 /// `cells` x `cells` counts of points given in coordinates that must be uniform on the unit square.

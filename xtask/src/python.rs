@@ -3,7 +3,7 @@
 use crate::c_tests::{CMAKE, PYTHON};
 use crate::tools::{self, Missing, Package};
 use crate::{library, paths, run};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -19,12 +19,22 @@ const TESTED_WITH: [Package; 5] = [
     Package { name: "python3-torch", file: "/usr/lib/python3/dist-packages/torch/__init__.py" },
 ];
 
-/// Runs python/tests with the package installed.
+/// Runs python/tests with the package installed; [`Missing`] where some of them could not run.
 pub fn test() -> Result<()> {
     let python = environment()?;
     let mut test = run::command("timeout");
     test.arg("600").arg(python).args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "python/tests"]);
-    run::check(test.env("NOISEFLOOR_WHEEL", wheel()?).env("PYTHONDONTWRITEBYTECODE", "1"))
+    let (said, result) = run::hear(test.env("NOISEFLOOR_WHEEL", wheel()?).env("PYTHONDONTWRITEBYTECODE", "1"))?;
+    println!("{said}");
+    result?;
+    all_ran(&said)
+}
+
+/// What pytest skipped it says by `-rs`, a line for each reason.
+fn all_ran(said: &str) -> Result<()> {
+    let skipped: Vec<&str> = said.lines().filter(|line| line.starts_with("SKIPPED ")).collect();
+    ensure!(skipped.is_empty(), Missing(format!("some of them, the others passed: {}", skipped.join("; "))));
+    Ok(())
 }
 
 /// A Python in which the package is installed from a new wheel, beside Debian's packages; made once.
@@ -89,4 +99,17 @@ fn wheels() -> PathBuf {
 /// The one that was built.
 pub fn wheel() -> Result<PathBuf> {
     paths::list(wheels())?.pop().context("pip made no wheel")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Missing, all_ran};
+
+    #[test]
+    fn what_is_skipped_has_not_run() {
+        let error = all_ran("..ss [100%]\nSKIPPED [2] test_jax.py:53: JAX is not to be had\n2 passed, 2 skipped\n");
+        let error = error.expect_err("JAX's tests did not run");
+        assert!(error.is::<Missing>() && error.to_string().ends_with("JAX is not to be had"), "{error}");
+        assert!(all_ran("..\n2 passed in 0.1s\n").is_ok());
+    }
 }

@@ -4,7 +4,8 @@
 use crate::tools::{self, Missing};
 use crate::{c_tests, library, paths, run};
 use anyhow::{Context, Result, ensure};
-use std::path::{Path, PathBuf};
+use std::collections::BTreeSet;
+use std::path::{Component, Path, PathBuf};
 
 /// Columns of a line.
 pub const WIDTH: usize = 120;
@@ -45,43 +46,68 @@ fn columns_of_text(line: &str) -> usize {
     if is_whole { 0 } else { first + rest.sum::<usize>() }
 }
 
-/// Checks the links of all documents: each must lead to a file that exists, and to a heading in it. Templates are
-/// checked as docs/report/ has them, filled in.
+/// Checks the links of all documents: each must lead to what git knows, and to a heading in it. Templates are checked
+/// as docs/report/ has them, filled in.
 pub fn links() -> Result<()> {
-    let root = paths::root();
     let files = tracked()?;
+    let known: BTreeSet<&Path> = files.iter().flat_map(|name| Path::new(name).ancestors()).collect();
     let is_document = |name: &&String| name.ends_with(".md") && !name.starts_with("report/templates/");
-    let documents: Vec<_> = files.iter().filter(is_document).map(|name| root.join(name)).collect();
-    let (mut links, mut broken) = (0, Vec::new());
-    for document in &documents {
-        for link in links_of(&paths::read(document)?).filter(|link| !link.contains("://")) {
+    let (mut links, mut documents, mut broken) = (0, 0, Vec::new());
+    for document in files.iter().filter(is_document) {
+        documents += 1;
+        for link in links_of(&without_blocks(&paths::read(document)?)).filter(|link| !link.contains("://")) {
             links += 1;
-            if !leads_somewhere(document, link)? {
-                broken.push(format!("{}: {link}", document.strip_prefix(root).unwrap_or(document).display()));
+            if !leads_somewhere(Path::new(document), link, &known)? {
+                broken.push(format!("{document}: {link}"));
             }
         }
     }
-    ensure!(broken.is_empty(), "links to no file or no heading:\n   {}", broken.join("\n   "));
-    println!("   {links} links in {} documents", documents.len());
+    ensure!(broken.is_empty(), "links to no file that git knows, or to no heading:\n   {}", broken.join("\n   "));
+    println!("   {links} links in {documents} documents");
     Ok(())
 }
 
-/// What stands between `](` and `)`.
-fn links_of(text: &str) -> impl Iterator<Item = &str> {
-    let after = text.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
-    after.map(|(link, _)| link).filter(|link| !link.is_empty() && !link.contains(char::is_whitespace))
+/// A text without its blocks of code.
+fn without_blocks(text: &str) -> String {
+    let mut is_code = false;
+    let mut is_text = |line: &&str| {
+        let is_fence = line.trim_start().starts_with("```");
+        is_code ^= is_fence;
+        !is_code && !is_fence
+    };
+    text.lines().filter(|line| is_text(line)).map(|line| line.to_owned() + "\n").collect()
 }
 
-fn leads_somewhere(document: &Path, link: &str) -> Result<bool> {
+/// What stands between `](` and `)`, and in attributes of HTML.
+fn links_of(text: &str) -> impl Iterator<Item = &str> {
+    let between =
+        |before, after| text.split(before).skip(1).filter_map(move |rest: &str| Some(rest.split_once(after)?.0));
+    let all = between("](", ")").chain(between("href=\"", "\"")).chain(between("src=\"", "\""));
+    all.filter(|link| !link.is_empty() && !link.contains(char::is_whitespace))
+}
+
+/// Paths are from the workspace root, whose own is empty.
+fn leads_somewhere(document: &Path, link: &str, known: &BTreeSet<&Path>) -> Result<bool> {
     let (file, heading) = link.split_once('#').map_or((link, None), |(file, heading)| (file, Some(heading)));
-    let folder = document.parent().unwrap_or(Path::new("."));
-    let target: PathBuf = if file.is_empty() { document.to_path_buf() } else { folder.join(file) };
+    let target = if file.is_empty() { Some(document.to_path_buf()) } else { joined(document, file) };
+    let Some(target) = target.filter(|target| known.contains(target.as_path())) else { return Ok(false) };
     let is_text = target.extension().is_some_and(|extension| extension == "md");
-    Ok(match heading {
-        _ if !target.exists() => false,
-        Some(heading) if is_text => paths::read(&target)?.lines().filter_map(anchor).any(|anchor| anchor == heading),
-        _ => true,
-    })
+    let Some(heading) = heading.filter(|_| is_text) else { return Ok(true) };
+    Ok(without_blocks(&paths::read(&target)?).lines().filter_map(anchor).any(|anchor| anchor == heading))
+}
+
+/// A path from a document's folder; none of what is not below the root.
+fn joined(document: &Path, link: &str) -> Option<PathBuf> {
+    let mut path = document.parent()?.to_path_buf();
+    for part in Path::new(link).components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if path.pop() => {}
+            Component::Normal(name) => path.push(name),
+            _ => return None,
+        }
+    }
+    Some(path)
 }
 
 /// The name that a heading's line has in links: lower case, spaces as dashes, punctuation left out.
@@ -115,7 +141,9 @@ pub fn sizes() -> Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use super::{anchor, columns_of_text, links_of};
+    use super::{anchor, columns_of_text, leads_somewhere, links_of, without_blocks};
+    use std::collections::BTreeSet;
+    use std::path::Path;
 
     #[test]
     fn tables_and_the_targets_of_links_have_no_width() {
@@ -133,7 +161,23 @@ mod tests {
 
     #[test]
     fn links_are_found() {
-        let text = "a [b](c.md#d), `x](y z)` and ![e](f.png)";
-        assert_eq!(links_of(text).collect::<Vec<_>>(), ["c.md#d", "f.png"]);
+        let text = "a [b](c.md#d), `x](y z)` and ![e](f.png)\n<a href=\"g.md\"><img src=\"h.svg\" width=\"9\"></a>";
+        assert_eq!(links_of(text).collect::<Vec<_>>(), ["c.md#d", "f.png", "g.md", "h.svg"]);
+    }
+
+    #[test]
+    fn links_lead_to_what_git_knows_and_to_headings_outside_of_code() {
+        let files = ["README.md", "docs/a.md", "docs/b.png"];
+        let known: BTreeSet<&Path> = files.iter().flat_map(|name| Path::new(name).ancestors()).collect();
+        let leads = |link| leads_somewhere(Path::new("docs/a.md"), link, &known).expect("README.md is readable");
+        for good in ["b.png", "./b.png", "../README.md", "../docs/", "..", "../README.md#limits", "b.png#part"] {
+            assert!(leads(good), "{good}");
+        }
+        // Cargo.toml is there, but not among the files.
+        for bad in ["c.md", "../a.md", "../../README.md", "/etc/passwd", "../Cargo.toml", "../README.md#no-heading"] {
+            assert!(!leads(bad), "{bad}");
+        }
+        let text = without_blocks("# One\n```sh\n# no heading\n```\n  ```\n[a](b)\n  ```\n## Two\n");
+        assert_eq!(text, "# One\n## Two\n");
     }
 }

@@ -148,9 +148,9 @@ enum Show {
     /// Of ratios the median of the pairs'.
     #[default]
     Median,
-    /// Of ratios that of the means, whose interval is the numerator's.
+    /// Of ratios that of the means.
     Mean,
-    /// The same. None if one of them is no number.
+    /// The same of geometric means. None if one of the numbers is none.
     Geometric,
     /// The first.
     Once,
@@ -349,23 +349,24 @@ impl Query {
         if self.over.is_empty() {
             return Ok(self.sum_up(&own));
         }
-        let mut least: Option<(f64, Vec<f64>)> = None;
+        let mut all = Vec::new();
         for over in choices(&self.over) {
             let others = joined(&rows, &over);
             // Nothing is compared with itself.
             let is_same = table.only(&others)? == table.only(&rows)?;
             let numbers = if is_same { Vec::new() } else { self.numbers(table, &others)? };
-            let value = self.sum_up(&numbers).map_or(f64::INFINITY, |estimate| estimate.value);
-            if !numbers.is_empty() && least.as_ref().is_none_or(|(least, _)| value < *least) {
-                least = Some((value, numbers));
-            }
+            let sums = [&own, &numbers].map(|numbers| self.sum_up(numbers));
+            let ratio = match self.show {
+                _ if numbers.is_empty() => continue,
+                Show::Mean => Estimate::ratio_of_means(&own, &numbers),
+                Show::Geometric if sums.contains(&None) => continue,
+                Show::Geometric => Estimate::ratio_of_geometric_means(&own, &numbers),
+                _ if own.len() == numbers.len() => Estimate::ratio(&own, &numbers),
+                _ => bail!("{}: {} numbers of {} over {} are no pairs", table.name, own.len(), self.of, numbers.len()),
+            };
+            all.push((sums[1].map_or(f64::INFINITY, |of| of.value), ratio));
         }
-        let Some((value, others)) = least else { return Ok(None) };
-        Ok(match self.show {
-            Show::Mean | Show::Geometric => self.sum_up(&own.iter().map(|own| own / value).collect::<Vec<_>>()),
-            _ if own.len() == others.len() => Some(Estimate::ratio(&own, &others)),
-            _ => bail!("{}: {} numbers of {} over {} are no pairs", table.name, own.len(), self.of, others.len()),
-        })
+        Ok(Estimate::over_least(&all))
     }
 
     fn numbers(&self, table: &Table, rows: &Filter) -> Result<Vec<f64>> {

@@ -3,19 +3,21 @@
 use super::prelude::*;
 use super::statistics::{moments, student};
 use crate::measure::running;
-use itertools::iproduct;
+use itertools::{Itertools, iproduct};
 use std::path::PathBuf;
-use xtask::renderers;
+use xtask::{paths, renderers};
 
 /// One scene: the kernels of each take seconds to compile.
 const QUICK: &str = "--scenes cornell --size 32 --seeds 3 --reference 512 --frames 16 --rounds 3";
+/// What measure.py measures one by one.
+const PARTS: [&str; 4] = ["errors", "gradients", "fits", "times"];
 const PLAIN: &str = "independent";
 const DEFAULT: &str = "noisefloor";
 /// Samples per pixel of the reference of the gradients.
 const REFERENCE: &str = "256";
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
-    // What was measured before, by hand: it takes more than twenty minutes.
+    // What was measured before, in parts: it takes more than twenty minutes, and scalar frames need the plugin.
     let measured = std::env::var_os("NOISEFLOOR_MITSUBA").filter(|_| !report.plan.is_quick()).map(PathBuf::from);
     let scratch = tempfile::tempdir()?;
     let folder = measured.clone().unwrap_or_else(|| scratch.path().to_owned());
@@ -36,28 +38,63 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
         "gradients" => gradients(&read("gradients")?),
         _ => read(name),
     })?;
+    let (parts, run) = earlier(&paths::json(folder.join("run.json"))?)?;
+    if measured.is_some() {
+        chapter.setting("measured in parts", parts);
+        _ = report.earlier.set(run);
+    }
     chapter.judge();
     Ok(chapter)
 }
 
-/// The geometric mean over all scenes of the error over that of Mitsuba's best sampler, seed by seed.
+/// What measure.py says of its parts: each with its date and seconds, in words; and how all of it came about.
+fn earlier(run: &Value) -> Result<(String, Value)> {
+    let parts = run.as_object().context("run.json has no parts")?;
+    let of = |name: &str| parts.get(name).with_context(|| format!("run.json: `{name}` was not measured"));
+    let all = PARTS.iter().map(|name| of(name)).collect::<Result<Vec<_>>>()?;
+    let machines: Vec<&Value> = all.iter().map(|part| &part["machine"]).unique().collect();
+    let [machine] = machines[..] else { bail!("run.json: parts of {} machines", machines.len()) };
+    let date = |part: &&Value| part["date"].as_str().map(str::to_owned);
+    let dates = all.iter().map(date).collect::<Option<Vec<_>>>().context("run.json: a part without a date")?;
+    let sum = |what: &str| all.iter().map(|part| part[what].as_f64()).sum::<Option<f64>>();
+    let words = PARTS.iter().zip(&all).zip(&dates).map(|((name, part), date)| {
+        format!("{name} on {date} in {:.0} s", part["seconds"].as_f64().unwrap_or(f64::NAN))
+    });
+    let words = words.collect::<Vec<_>>().join(", ");
+    let date = dates.iter().sorted().dedup().join(", ");
+    let [seconds, processor_seconds] = ["seconds", "processor_seconds"].map(sum);
+    let run = json!({ "date": date, "seconds": seconds, "processor_seconds": processor_seconds, "other_work": null,
+                      "machine": machine });
+    Ok((words, run))
+}
+
+/// The geometric mean over all scenes of the error over that of Mitsuba's best sampler. Seed by seed what both are off
+/// by gives the interval. That the same numbers say which is best makes the ratio larger, if anything.
 fn over_scenes(errors: &Table) -> Result<Table> {
-    let mut all = Table::new("over scenes", "error | spp | ratio");
+    let mut all = Table::new("over scenes", "error | spp | ratio | ratio_low | ratio_high");
     let samplers = errors.distinct("sampler")?;
     for (error, spp) in iproduct!(["raw", "denoised"], errors.distinct("spp")?) {
-        let mut ratios: Vec<Vec<f64>> = Vec::new();
+        let (mut logarithms, mut off): (Vec<f64>, Vec<Vec<f64>>) = Default::default();
         for scene in errors.distinct("scene")? {
             let of = |sampler| errors.of(&[("scene", scene), ("spp", spp), ("sampler", sampler)]).numbers(error);
+            let own = of(DEFAULT)?;
             let others = samplers.iter().filter(|name| !name.starts_with(DEFAULT));
             let others = others.map(|name| of(name)).collect::<Result<Vec<_>>>()?;
-            // Of a sampler that was not measured it is no number, which `min` passes over.
-            let best = others.iter().map(|numbers| moments(numbers).0).fold(f64::INFINITY, f64::min);
-            ratios.push(of(DEFAULT)?.into_iter().map(|own| own / best).collect());
+            // Some were not measured.
+            let others = others.iter().filter(|of| !of.is_empty()).map(|of| (moments(of).0, of));
+            let Some((best, numbers)) = others.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+            let mean = moments(&own).0;
+            logarithms.push((mean / best).ln());
+            off.push(own.iter().zip(numbers).map(|(a, b)| a / mean - b / best).collect());
         }
-        for seed in 0..ratios.iter().map(Vec::len).min().unwrap_or(0) {
-            let scenes: Vec<f64> = ratios.iter().map(|scene| scene[seed].max(1e-9)).collect();
-            all.push([error, spp, &Estimate::geometric_mean(&scenes).value.to_string()]);
-        }
+        let seeds = off.iter().map(Vec::len).min().unwrap_or(0);
+        let mean = |numbers: &[f64]| numbers.iter().sum::<f64>() / numbers.len() as f64;
+        let logarithm = mean(&logarithms);
+        let of = |seed: usize| mean(&off.iter().map(|off| off[seed]).collect::<Vec<_>>());
+        let each: Vec<f64> = (0..seeds).map(|seed| logarithm + of(seed)).collect();
+        let Estimate { low, high, .. } = Estimate::mean(&each);
+        let ends = [logarithm, low, high].map(|end| end.exp().to_string());
+        all.push([error, spp].into_iter().chain(ends.iter().map(String::as_str)));
     }
     Ok(all)
 }
@@ -99,6 +136,44 @@ fn gradients(measured: &Table) -> Result<Table> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_was_measured_before_has_its_own_date_and_machine() -> Result<()> {
+        let part = |date, seconds| json!({"date": date, "seconds": seconds, "machine": {"processor": "Nine"}});
+        let mut run = json!({"errors": part("2001-02-04", 60.4), "gradients": part("2001-02-03", 30.0),
+                             "fits": part("2001-02-04", 9.6), "times": part("2001-02-04", 5.0)});
+        let (parts, all) = earlier(&run)?;
+        assert_eq!((&all["date"], &all["seconds"]), (&json!("2001-02-03, 2001-02-04"), &json!(105.0)));
+        assert!(all["machine"]["processor"] == "Nine" && all["processor_seconds"].is_null(), "{all}");
+        assert!(parts.starts_with("errors on 2001-02-04 in 60 s, gradients on 2001-02-03 in 30 s"), "{parts}");
+        run["times"]["machine"] = json!({"processor": "Ten"});
+        assert!(earlier(&run).is_err(), "of two machines");
+        run.as_object_mut().map(|parts| parts.remove("times"));
+        assert!(earlier(&run).is_err(), "a part was not measured");
+        Ok(())
+    }
+
+    /// Of two scenes the errors of one go along with the best's, so that the other's interval is that of both, halved.
+    #[test]
+    fn the_best_sampler_s_errors_spread_too() -> Result<()> {
+        let mut errors = Table::new("errors", "scene | spp | sampler | raw | denoised");
+        for (scene, sampler, numbers) in [
+            ("a", "ldsampler", [1.0, 2.0, 3.0]),
+            ("a", DEFAULT, [0.5, 1.0, 1.5]),
+            ("b", "ldsampler", [0.5, 1.0, 1.5]),
+            ("b", "independent", [7.0, 8.0, 9.0]),
+            ("b", DEFAULT, [2.0, 2.0, 2.0]),
+        ] {
+            numbers.iter().for_each(|number| errors.push([scene, "4", sampler, &number.to_string(), "1"]));
+        }
+        let raw = over_scenes(&errors)?.of(&[("error", "raw")]);
+        let half = 4.302_652_7 * 0.25 / 3_f64.sqrt();
+        for (column, expected) in [("ratio", 1.0), ("ratio_low", (-half).exp()), ("ratio_high", half.exp())] {
+            let found = raw.numbers(column)?;
+            assert!(found.len() == 1 && (found[0] - expected).abs() < 1e-6, "{column}: {found:?} for {expected}");
+        }
+        Ok(())
+    }
 
     /// Three frames each: Student's quantile of two degrees of freedom, 4.303.
     #[test]

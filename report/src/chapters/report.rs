@@ -6,6 +6,8 @@ use super::described::{Description, Measured};
 use super::plan::Plan;
 use crate::measure::output::Output;
 use anyhow::Result;
+use serde_json::Value;
+use std::cell::OnceCell;
 
 pub(crate) struct Report<'a> {
     /// The chapter that is written, as files name it, its title, and the index's line.
@@ -15,6 +17,8 @@ pub(crate) struct Report<'a> {
     /// Markdown, JSON, plots.
     pub(crate) output: &'a Output,
     pub(crate) clock: Clock,
+    /// Where the chapter is of what was measured before: how that came about.
+    pub(crate) earlier: OnceCell<Value>,
 }
 
 impl Report<'_> {

@@ -12,6 +12,7 @@ use crate::measure::progress;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use serde_json::{Value, json};
+use std::cell::{OnceCell, RefCell};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use xtask::paths;
@@ -97,7 +98,8 @@ type Wanted = (&'static str, Write, Description);
 fn write_one((name, write, description): &Wanted, plan: &Plan, folder: &Path, machine: &Value) -> Result<()> {
     let (output, date) = (Output::new(folder)?, machine::date());
     let names @ [name, _, about] = description.names(name, plan);
-    let report = Report { names, description, plan, output: &output, clock: Clock::start() };
+    let earlier = OnceCell::new();
+    let report = Report { names, description, plan, output: &output, clock: Clock::start(), earlier };
     let mut chapter = write(&report)?.json();
     chapter["run"] = json!({
         "name": name,
@@ -109,10 +111,26 @@ fn write_one((name, write, description): &Wanted, plan: &Plan, folder: &Path, ma
         "date": date,
         "machine": machine,
     });
-    let pictures = output.names()?;
-    write_chapter(&output, name, &chapter, &|file| pictures.iter().any(|picture| picture == file))?;
+    if let (Some(run), Some(earlier)) =
+        (chapter["run"].as_object_mut(), report.earlier.get().and_then(Value::as_object))
+    {
+        run.extend(earlier.clone());
+    }
+    let former = write_new(&output, name, &chapter)?;
     output.write_text("README.md", &index::write(folder, Some((name, &chapter)))?)?;
-    output.commit()
+    output.commit(&former)
+}
+
+/// A chapter that was measured, with the pictures that were made of it; those that it shows otherwise and now has not.
+fn write_new(output: &Output, name: &str, chapter: &Value) -> Result<Vec<String>> {
+    let (pictures, former) = (output.names()?, RefCell::new(Vec::new()));
+    let exists = |file: &str| {
+        let is_new = pictures.iter().any(|picture| picture == file);
+        former.borrow_mut().extend((!is_new).then(|| file.to_owned()));
+        is_new
+    };
+    write_chapter(output, name, chapter, &exists)?;
+    Ok(former.into_inner())
 }
 
 /// NAME.json and NAME.md.
@@ -130,7 +148,7 @@ fn render(folder: &Path) -> Result<()> {
         write_chapter(&output, name, &chapter, &|file| folder.join(file).exists())?;
     }
     output.write_text("README.md", &index::write(folder, None)?)?;
-    output.commit()
+    output.commit(&[])
 }
 
 /// Steps of the tests, quick chapters: whether they can be measured, and their templates show every table.
@@ -152,4 +170,27 @@ pub(crate) fn check(step: &str) -> Result<()> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn pictures_of_an_earlier_run_go() -> Result<()> {
+        let scratch = tempfile::tempdir()?;
+        let folder = scratch.path().join("report");
+        let has = |name: &str| folder.join(format!("gradients-{name}.svg")).exists();
+        let chapter = json!({"title": "Gradients", "run": {"name": "gradients"}});
+        for pictures in [&["digits-time", "mnist-time"][..], &["digits-time"]] {
+            let output = Output::new(&folder)?;
+            pictures.iter().try_for_each(|name| output.write_text(&format!("gradients-{name}.svg"), ""))?;
+            let former = write_new(&output, "gradients", &chapter)?;
+            output.commit(&former)?;
+            assert!(has("digits-time") && has("mnist-time") == (pictures.len() == 2), "{former:?}");
+        }
+        assert!(!fs::read_to_string(folder.join("gradients.md"))?.contains("mnist-time"));
+        Ok(())
+    }
 }

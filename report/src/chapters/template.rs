@@ -2,6 +2,7 @@
 //!
 //! - `{{table NAME}}`, on a line of its own: the next table of this name in the section of the heading above it.
 //! - `{{NAME}}`: a figure that was quoted, a setting, or the JSON's own NAME.
+//! - `{{not NAME}}`: nothing, where there is no NAME; where there is one, nothing fills it.
 //! - `{{targets}}`, on a line of its own: templates/targets.md.
 //!
 //! What a run did not measure is left out: a paragraph or an item with a hole that nothing fills, a picture that is not
@@ -103,9 +104,16 @@ fn holes(text: &str, json: &Value) -> Option<String> {
         let (name, after) = behind.split_once("}}")?;
         // A name may be broken between lines.
         let name = name.split_whitespace().collect::<Vec<_>>().join(" ");
-        let known = [&json["quoted"][&name], &json["settings"][&name], &json["run"][&name], &json[&name]];
+        let known = |name: &str| {
+            let places = [&json["quoted"][name], &json["settings"][name], &json["run"][name], &json[name]];
+            places.into_iter().find_map(word)
+        };
         out += before;
-        out += &known.into_iter().find_map(word)?;
+        match name.strip_prefix("not ") {
+            Some(name) if known(name).is_some() => return None,
+            Some(_) => {}
+            None => out += &known(&name)?,
+        }
         rest = after;
     }
     Some(out + rest)
@@ -140,12 +148,13 @@ mod tests {
         let cell = json!({"text": "0.250 [0.2, 0.3]", "value": 0.25});
         let table = |section| json!({"name": "t", "section": section, "columns": ["a", "b"], "rows": [["x", cell]]});
         let json = json!({"title": "T", "settings": {"spp": 64}, "tables": [table("Two"), table("One")]});
-        let template = "# {{title}}\n\nAt {{spp}}.\n\n- {{none}}\n- {{spp}} too\n\n## One\n\n{{table t}}\n\n\
-                        {{table t}}\n\n\
+        let template = "# {{title}}\n\nAt {{spp}}.\n\n- {{none}}\n- {{spp}} too\n- {{not spp}}A\n- {{not none}}B\n\n\
+                        ## One\n\n{{table t}}\n\n{{table t}}\n\n\
                         ## None\n\nText.\n\n{{table t}}\n\n## Two\n\n{{table t}}\n\n![x](no.svg)\n\n![x](a.svg)";
         let text = fill(template, &json, &|file| file == "a.svg").expect("a text");
         let shown = "| a |                b |\n| - | ---------------: |\n| x | 0.250 [0.2, 0.3] |";
-        let expected = format!("# T\n\nAt 64.\n\n- 64 too\n\n## One\n\n{shown}\n\n## Two\n\n{shown}\n\n![x](a.svg)\n");
+        let expected =
+            format!("# T\n\nAt 64.\n\n- 64 too\n- B\n\n## One\n\n{shown}\n\n## Two\n\n{shown}\n\n![x](a.svg)\n");
         assert_eq!(text, expected);
         assert!(fill("# T\n\n## One\n\n{{table t}}", &json, &|_| true).is_err(), "a table that is not shown");
     }

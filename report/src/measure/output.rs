@@ -49,10 +49,15 @@ impl Output {
         Ok(names)
     }
 
-    /// Moves the files to where they belong, replacing those of an earlier run.
-    pub(crate) fn commit(self) -> Result<()> {
+    /// Moves the files to where they belong, replacing those of an earlier run; what that wrote and this did not goes.
+    pub(crate) fn commit(self, former: &[String]) -> Result<()> {
         let move_all = || -> Result<()> {
             fs::create_dir_all(&self.folder)?;
+            former
+                .iter()
+                .map(|name| self.folder.join(name))
+                .filter(|path| path.exists())
+                .try_for_each(fs::remove_file)?;
             for name in self.names()? {
                 fs::rename(self.pending.path().join(&name), self.folder.join(&name))?;
             }

@@ -61,7 +61,7 @@ fn write(tables: &[Table]) -> Result<()> {
     }
     let output = Output::new(&paths::root().join("docs/report"))?;
     write_chapter(&output, "sizes", &chapter.json(), &|_| true)?;
-    output.commit()?;
+    output.commit(&[])?;
     println!("wrote docs/report/sizes.md and sizes.json");
     Ok(())
 }
