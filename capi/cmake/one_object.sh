@@ -3,14 +3,16 @@
 #
 # Makes one relocatable object of cargo's static library: only nf_* is visible, what no nf_* needs is dropped.
 # Cargo's own archive also exports compiler-builtins (fmodf, cbrt, ...), which would shadow the C library's.
-# LD, NM and OBJCOPY name other tools than ld, nm and objcopy (GNU binutils).
+# LD, NM and OBJCOPY name other tools than ld, nm and objcopy: GNU's or LLVM's.
 set -eu
 archive=$1
 object=$2
 
-# Debian's nm loads LLVM's plugin, which then says "no symbols".
-symbols=$("${NM:-nm}" --plugin=/none --defined-only --extern-only "$archive" |
-    sed -n 's/.* [A-Z] \(nf_[a-z0-9_]*\)$/-u \1/p')
+# Debian's GNU nm loads LLVM's plugin, which then says "no symbols". LLVM's own nm has no such option.
+set --
+case $("${NM:-nm}" --version) in "GNU nm"*) set -- --plugin=/none ;; esac
+symbols=$("${NM:-nm}" "$@" --defined-only --extern-only "$archive")
+symbols=$(printf '%s\n' "$symbols" | sed -n 's/.* [A-Z] \(nf_[a-z0-9_]*\)$/-u \1/p')
 if [ -z "$symbols" ]; then
     echo "error: $archive defines no nf_*: is it the static library of noisefloor-capi?" >&2
     exit 1
