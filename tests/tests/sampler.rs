@@ -275,7 +275,8 @@ fn places() {
 /// theirs with others. As the documents say.
 #[test]
 fn first_two_samples_repeat() {
-    let vector = |s: Sampler| [s.draw::<4>(), s.domain(7).draw(), s.domain(1).domain(0).draw()].map(|u| u.map(f32::to_bits));
+    let vector =
+        |s: Sampler| [s.draw::<4>(), s.domain(7).draw(), s.domain(1).domain(0).draw()].map(|u| u.map(f32::to_bits));
     let distinct = |make: fn(u32, u32) -> Sampler, index: u32| {
         let all = (0..128 * 128).map(|pixel| vector(make(pixel % 128, pixel / 128).moved(0, 0, index)));
         all.collect::<HashSet<_>>().len()
