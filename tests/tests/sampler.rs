@@ -288,7 +288,7 @@ fn first_two_samples_repeat() {
             assert_eq!(vector(make(3, 70).moved(0, 0, index)), vector(make(35, 6).moved(0, 0, index)));
         }
     }
-    let white: fn(u32, u32) -> Sampler = |x, y| Sampler::white(x, y, 0, 0);
+    let white: fn(u32, u32) -> Sampler = |x, y| Sampler::white(x, y, 3, 0);
     assert_eq!([0, 1].map(|index| distinct(white, index)), [PIXELS as usize; 2]);
     assert!(distinct(white, 2) > 4 * PIXELS as usize);
 }

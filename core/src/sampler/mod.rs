@@ -78,8 +78,8 @@ impl Sampler {
         Sampler { flags: WHITE, ..Sampler::pixel(x, y, frame, index) }
     }
 
-    /// The child domain of a key. Children of different keys are unrelated to each other and to their parent, at indices
-    /// 0 and 1 as far as [`pixel`](Sampler::pixel) says; keys mean something only among children of one parent.
+    /// The child domain of a key. Children of different keys are unrelated to each other and to their parent, at
+    /// indices 0 and 1 as far as [`pixel`](Sampler::pixel) says; keys mean something only among children of one parent.
     #[inline]
     #[must_use]
     pub const fn domain(self, key: u32) -> Sampler {
