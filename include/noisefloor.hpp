@@ -67,6 +67,18 @@ template <class C>
 using if_ends = std::enable_if_t<!std::is_reference_v<C> &&
                                  !std::is_same_v<decltype(std::declval<std::remove_const_t<C> &>().data()),
                                                  decltype(std::declval<const C &>().data())>>;
+template <class C, class = void> inline constexpr bool ends = false;
+template <class C> inline constexpr bool ends<C, if_ends<C>> = true;
+// A span in a struct, which outlives the expression that makes it.
+template <class T> class kept : public span<T> {
+public:
+    constexpr kept() noexcept = default;
+    constexpr kept(T *data, std::size_t size) noexcept : span<T>(data, size) {}
+    template <class C, class = std::enable_if_t<std::is_convertible_v<C, span<T>> && !ends<C>>>
+    constexpr kept(C &&what) noexcept : span<T>(what)
+    {
+    }
+};
 } // namespace detail
 
 // Memory for the library to work in, 8-byte aligned. Made from an array or container of any trivial type.
@@ -215,7 +227,7 @@ enum class solver : std::uint32_t {
 };
 // nf_cv_config with its defaults, and functions that change one thing and can be chained:
 // `config(3, 2, 3).with(estimator::k_fold).with_folds(2)`. The C fields remain accessible.
-struct config : nf_cv_config {
+struct [[nodiscard]] config : nf_cv_config {
     config() noexcept : config(2, 2) {}
     config(std::uint32_t dims_, std::uint32_t order_, std::uint32_t channels_ = 1) noexcept : nf_cv_config()
     {
@@ -297,7 +309,7 @@ private:
 // nf_cv_image: the pixels of an image and what is known of them, and functions that add one thing and can be chained:
 // `image(640, 480).with_surfaces(ids).with_window(16)`. The C fields remain accessible, but the lengths of arrays that
 // they point to are then unknown: only the functions set them. The arrays must outlive the image.
-class image : public nf_cv_image {
+class [[nodiscard]] image : public nf_cv_image {
 public:
     image(std::uint32_t width_, std::uint32_t height_, std::uint32_t frames_ = 1) noexcept : nf_cv_image()
     {
@@ -397,15 +409,16 @@ private:
     std::size_t surfaces_ = 0, factors_ = 0;
 };
 
-// Samples in caller arrays. The number of samples is f.size() / channels, and all lengths must agree with it.
+// Samples in caller arrays, which must outlive it. The number of samples is f.size() / channels, and all lengths must
+// agree with it: u has config::stride numbers for each sample, of the last at least config::dims.
 struct samples {
-    span<const float> u;
-    span<const float> f;
-    span<const float> controls{};
-    span<const float> control_integrals{};
+    detail::kept<const float> u;
+    detail::kept<const float> f;
+    detail::kept<const float> controls{};
+    detail::kept<const float> control_integrals{};
     // Of an image: what f would be with nothing in the way, and config::channels integrals of it for each pixel.
-    span<const float> known{};
-    span<const float> known_integrals{};
+    detail::kept<const float> known{};
+    detail::kept<const float> known_integrals{};
 };
 
 namespace detail {
@@ -419,7 +432,8 @@ inline nf_status count(const nf_cv_config &how, const samples &what, std::size_t
     if (n == 0)
         return NF_ERR_NO_SAMPLES;
     // Products that overflow would say "enough": divide instead.
-    if (what.u.size() < how.dims || (n > 1 && (stride == 0 || (what.u.size() - how.dims) / stride < n - 1)))
+    if (stride == 0 || what.u.size() < how.dims || (what.u.size() - how.dims) / stride < n - 1 ||
+        (what.u.size() - 1) / stride > n - 1)
         return NF_ERR_RANGE;
     const std::size_t used = how.controls;
     if (what.control_integrals.size() != used || what.controls.size() % n != 0 || what.controls.size() / n != used)
@@ -512,11 +526,13 @@ public:
         accumulator made(nullptr, how);
         return detail::finish(nf_cv_accumulator_init(where.data(), where.bytes(), &how, &made.handle_), made);
     }
+    template <class C, class = detail::if_ends<C>>
+    static returned<accumulator> create(const nf_cv_config &, C &&) = delete;
     // A view of one made earlier with the same configuration.
     accumulator(nf_cv_accumulator *handle, const nf_cv_config &how) noexcept : handle_(handle), how_(how) {}
     accumulator() noexcept = default;
 
-    returned<void> add(const samples &what) const
+    returned<void> add(const samples &what)
     {
         std::size_t n = 0;
         nf_status code = detail::count(how_, what, n);
@@ -525,7 +541,7 @@ public:
             code = nf_cv_accumulator_add(handle_, &all);
         return detail::finish(code);
     }
-    returned<void> merge(const accumulator &other) const
+    returned<void> merge(const accumulator &other)
     {
         return detail::finish(nf_cv_accumulator_merge(handle_, other.handle_));
     }
@@ -562,8 +578,8 @@ constexpr std::size_t max_techniques = NF_MIS_MAX_TECHNIQUES;
 
 // Densities and numbers of samples of the techniques at one point; both of one length.
 struct point {
-    span<const float> pdf;
-    span<const std::uint32_t> counts;
+    noisefloor::detail::kept<const float> pdf;
+    noisefloor::detail::kept<const std::uint32_t> counts;
 };
 
 namespace detail {
@@ -639,10 +655,12 @@ public:
         }
         return detail::finish(code, made);
     }
+    template <class C, class = detail::if_ends<C>>
+    static returned<optimal_mis> create(span<const std::uint32_t>, std::uint32_t, C &&) = delete;
     optimal_mis() noexcept = default;
 
     // pdf[techniques], value[integrals]
-    returned<void> add(std::uint32_t technique, span<const float> pdf, span<const float> value) const
+    returned<void> add(std::uint32_t technique, span<const float> pdf, span<const float> value)
     {
         const bool fits = pdf.size() == techniques_ && value.size() == integrals_;
         return detail::finish(fits ? nf_omis_add(handle_, technique, pdf.data(), value.data()) : NF_ERR_RANGE);
@@ -661,11 +679,11 @@ public:
         return detail::finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, nullptr, out.data())
                                    : NF_ERR_RANGE);
     }
-    returned<void> next_batch(solver how = solver::ridge, float ridge = 0.0f, float beta = 1.0f) const
+    returned<void> next_batch(solver how = solver::ridge, float ridge = 0.0f, float beta = 1.0f)
     {
         return detail::finish(nf_omis_next_batch(handle_, static_cast<std::uint32_t>(how), ridge, beta));
     }
-    returned<void> merge(const optimal_mis &other) const
+    returned<void> merge(const optimal_mis &other)
     {
         return detail::finish(nf_omis_merge(handle_, other.handle_));
     }
@@ -851,6 +869,8 @@ public:
             fits ? nf_table_init(&state_, where.data(), where.bytes(), length(importance), importance.data())
                  : NF_ERR_RANGE);
     }
+    template <class C, class = detail::if_ends<C>> returned<void> init(C &&, std::uint32_t) = delete;
+    template <class C, class = detail::if_ends<C>> returned<void> init(C &&, span<const float>) = delete;
     returned<void> draw(rng &random, span<std::uint32_t> index, span<float> weight = {}) const
     {
         return finish_draw(nf_table_draw, &state_, random, index, weight);
@@ -930,6 +950,7 @@ public:
     {
         return detail::finish(nf_table_load(&state_, where.data(), where.bytes(), saved.data(), saved.size()));
     }
+    template <class C, class = detail::if_ends<C>> returned<void> load(C &&, span<const unsigned char>) = delete;
     const nf_table &state() const noexcept { return state_; }
 
 private:
@@ -1059,12 +1080,14 @@ public:
             nf_gradient_init(where.data(), where.bytes(), techniques, parameters, &made.handle_);
         return detail::finish(code, made);
     }
+    template <class C, class = detail::if_ends<C>>
+    static returned<optimal_gradient> create(std::uint32_t, std::uint32_t, C &&) = delete;
     optimal_gradient() noexcept = default;
 
     // pdf[batch * techniques], technique[batch], gradients[batch * parameters], out[parameters]
     returned<void> estimate(std::uint32_t items, span<const float> pdf, span<const std::uint32_t> technique,
                             span<const float> gradients, span<float> out, float momentum = 0.0f,
-                            optimal_mis::solver how = optimal_mis::solver::ridge, float ridge = 0.0f) const
+                            optimal_mis::solver how = optimal_mis::solver::ridge, float ridge = 0.0f)
     {
         const std::uint64_t batch = technique.size();
         const bool fits = batch <= UINT32_MAX && pdf.size() == batch * techniques_ &&

@@ -18,7 +18,8 @@
  *
  * For HLSL by another compiler than DXC, glslang say, define NFS_HLSL.
  *
- * Functions and arguments are those of noisefloor.h. State is 16 bytes. GLSL needs version 400 or ES 310, there with
+ * Functions and arguments are those of noisefloor.h. At indices 0 and 1 the numbers of all domains repeat every 32
+ * pixels: seeds of further numbers need the pixel, too. State is 16 bytes. GLSL needs version 400 or ES 310, there with
  * a table of highp uint.
  */
 #ifndef NOISEFLOOR_SAMPLER_H

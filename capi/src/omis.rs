@@ -78,7 +78,8 @@ pub unsafe extern "C" fn nf_omis_init(
 }
 
 /// Adds one sample, drawn by `technique`: every one, those of value 0 too, in whole rounds of the counts or from
-/// technique k with probability n_k / sum n.
+/// technique k with probability n_k / sum n. A draw that failed, without a point, has value 0, pdf 1 of its technique
+/// and 0 of the others.
 ///
 /// pdf[techniques]: the density of each technique at the point, finite, at least 0, that of the technique positive.
 /// value[integrals]: each integrand there, not divided by any density, finite.

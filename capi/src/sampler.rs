@@ -29,19 +29,23 @@ pub struct nf_sampler {
 /// Sample `index` of pixel (x, y) in `frame`, any values of each. The samples of a pixel are one sequence, best at
 /// powers of two. Frames are unrelated to each other: where they are averaged, leave the frame 0 and count the index
 /// on.
+///
+/// At indices 0 and 1 the numbers of all domains repeat every 32 pixels: an image has 1,024 different vectors. Seeds of
+/// further numbers need the pixel, too.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_sampler_pixel(x: u32, y: u32, frame: u32, index: u32) -> nf_sampler {
     of(Sampler::pixel(x, y, frame, index))
 }
 
-/// As nf_sampler_pixel(), but the error is white over the image: for denoisers that were made for white noise.
+/// As nf_sampler_pixel(), but the error is white over the image: for denoisers that were made for white noise. At
+/// indices 0 and 1 a pixel has one of 1,024 vectors at random.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_sampler_white(x: u32, y: u32, frame: u32, index: u32) -> nf_sampler {
     of(Sampler::white(x, y, frame, index))
 }
 
-/// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent;
-/// keys mean something only among the children of one parent.
+/// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent, at
+/// indices 0 and 1 as far as nf_sampler_pixel() says; keys mean something only among the children of one parent.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_sampler_domain(sampler: nf_sampler, key: u32) -> nf_sampler {
     of(to(&sampler).domain(key))

@@ -6,10 +6,14 @@
 
 namespace demo {
 
-// Numbers beyond the sample vector: a hash of it, which is uniform wherever the vector is.
+// Numbers beyond the sample vector: a hash of it, which is uniform wherever the vector is, and of the pixel. Of the
+// vector alone it would repeat: in noisefloor's first two samples pixels 32 apart have the same.
 class HashedStream {
 public:
-    HashedStream(const float *u, uint32_t count) : u_(u), count_(count) {}
+    HashedStream(uint32_t x, uint32_t y, const float *u, uint32_t count)
+        : pixel_(uint64_t{y} << 32 | x), u_(u), count_(count)
+    {
+    }
 
     float next()
     {
@@ -27,7 +31,7 @@ public:
 private:
     void start()
     {
-        uint64_t key = 0;
+        uint64_t key = mix(pixel_);
         for (uint32_t i = 0; i < count_; ++i) {
             uint32_t bits;
             std::memcpy(&bits, u_ + i, sizeof bits);
@@ -37,6 +41,7 @@ private:
         count_ = 0;
     }
 
+    uint64_t pixel_;
     const float *u_;
     uint32_t count_; // 0 once the stream is made: most paths end before
     SplitMix stream_{0};

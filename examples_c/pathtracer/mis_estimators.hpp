@@ -8,8 +8,7 @@
 namespace demo {
 
 // What of one sample the estimators need, beside its numbers: a direction's value and both densities, per solid angle.
-// Not divided by any density. `pdf` of the technique that drew it may be 0 where nothing can be seen; such a sample is
-// worth nothing.
+// Not divided by any density. `pdf` of the technique that drew it is 0 where it failed: from within a light, say.
 struct Drawn {
     float value[3];
     float pdf[2]; // by light sampling, by direction sampling
@@ -61,12 +60,14 @@ private:
             nf_omis *omis = nullptr;
             check(nf_omis_init(omis_.data(), 8 * omis_.size(), 2, 3, counts, &omis), "nf_omis_init");
             for (size_t i = 0; i < n; ++i)
-                for (uint32_t t = 0; t < 2; ++t)
-                    if (pairs[i].drawn[t].pdf[t] > 0)
-                        check(nf_omis_add(omis, t, pairs[i].drawn[t].pdf, pairs[i].drawn[t].value), "nf_omis_add");
-            nf_status status = nf_omis_solve(omis, NF_OMIS_RIDGE, 0, nullptr, alpha);
-            if (status != NF_ERR_NO_SAMPLES) // nothing to be seen from here
-                check(status, "nf_omis_solve");
+                for (uint32_t t = 0; t < 2; ++t) {
+                    // What failed counts, too: as worth nothing, where no other technique draws.
+                    Drawn failed = {};
+                    failed.pdf[t] = 1;
+                    const Drawn &sample = pairs[i].drawn[t].pdf[t] > 0 ? pairs[i].drawn[t] : failed;
+                    check(nf_omis_add(omis, t, sample.pdf, sample.value), "nf_omis_add");
+                }
+            check(nf_omis_solve(omis, NF_OMIS_RIDGE, 0, nullptr, alpha), "nf_omis_solve");
         }
         std::copy_n(pairs[0].emitted, 3, mean);
         for (uint32_t t = 0; t < 2; ++t) {

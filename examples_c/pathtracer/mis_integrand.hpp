@@ -21,7 +21,8 @@ inline float drawing_density(Vector origin, Vector edge1, Vector edge2, Vector n
     return inside ? distance * distance / (std::abs(cosine) * area) : 0.0f;
 }
 
-inline float drawing_density(const Light &light, Vector from, Vector direction)
+// `is_own`: whether the direction is one that this light's sampling drew: rounding does not put it beside a sphere.
+inline float drawing_density(const Light &light, Vector from, Vector direction, bool is_own = false)
 {
     switch (light.kind) {
     case Light::parallelogram:
@@ -35,11 +36,10 @@ inline float drawing_density(const Light &light, Vector from, Vector direction)
         return sum;
     }
     case Light::sphere: {
-        Vector to_center = light.origin - from;
-        float distance = length(to_center);
-        if (distance <= light.radius || dot(to_center, direction) < cone_cosine(light, to_center) * distance)
-            return 0;
-        return light_pdf(light, from, direction, 0, {});
+        // By the sine: the cosines of a small sphere's directions are all alike in float.
+        Vector to_center = light.origin - from, aside = cross(to_center, direction);
+        bool meets = dot(to_center, direction) > 0 && dot(aside, aside) <= light.radius * light.radius;
+        return is_own || meets ? light_pdf(light, from, direction, 0, {}) : 0.0f;
     }
     case Light::environment: break;
     }
@@ -74,8 +74,10 @@ public:
             if (lit) {
                 Shading s = shading(view.ray, view.hit);
                 Vector from = leave(view.ray, view.hit, s, s.geometric);
-                pair.drawn[0] = drawn(view, s, from, to_light(from, u[0], u[1]));
-                pair.drawn[1] = drawn(view, s, from, sample_direction(s, u[2], u[3]));
+                const Light *light = nullptr;
+                Vector direction = to_light(from, u[0], u[1], light);
+                pair.drawn[0] = drawn(view, s, from, direction, light);
+                pair.drawn[1] = drawn(view, s, from, sample_direction(s, u[2], u[3]), nullptr);
             }
             store(emitted_light, pair.emitted);
             std::memcpy(f, &pair, sizeof pair);
@@ -97,21 +99,23 @@ private:
     }
 
     // The first number picks one of several lights, and is then reused.
-    Vector to_light(Vector from, float u, float v) const
+    Vector to_light(Vector from, float u, float v, const Light *&light) const
     {
         size_t count = scene().lights.size(),
                i = std::min(static_cast<size_t>(u * static_cast<float>(count)), count - 1);
-        return sample_light(scene().lights[i], from, u * static_cast<float>(count) - static_cast<float>(i), v)
-            .direction;
+        light = &scene().lights[i];
+        return sample_light(*light, from, u * static_cast<float>(count) - static_cast<float>(i), v).direction;
     }
 
-    Drawn drawn(const View &view, const Shading &s, Vector from, Vector direction) const
+    // `own`: the light that drew the direction, or none.
+    Drawn drawn(const View &view, const Shading &s, Vector from, Vector direction, const Light *own) const
     {
         Drawn result = {};
         if (black(direction)) // the point is inside the light
             return result;
         for (const Light &light : scene().lights)
-            result.pdf[0] += drawing_density(light, from, direction) / static_cast<float>(scene().lights.size());
+            result.pdf[0] +=
+                drawing_density(light, from, direction, &light == own) / static_cast<float>(scene().lights.size());
         result.pdf[1] = direction_pdf(s, direction);
         Color value = reflectance(s, direction);
         if (black(value))

@@ -59,7 +59,7 @@ public:
                 view = look(camera_ray(column, row, u));
             if (shown && head_ > 0)
                 shown[i] = show(view);
-            Color value = view.throughput * radiance(view, u);
+            Color value = view.throughput * radiance(x, y, view, u);
             f[0] = value.x;
             f[1] = value.y;
             f[2] = value.z;
@@ -162,11 +162,11 @@ protected:
         return 1 + 6 * view.hit.material + 2 * static_cast<uint32_t>(axis) + (n[axis] > 0);
     }
 
-    Color radiance(const View &view, const float *u) const
+    Color radiance(uint32_t x, uint32_t y, const View &view, const float *u) const
     {
         if (!view.found)
             return background(view.ray.direction);
-        return layout_.bounces == 0 ? direct(view, u + head_) : path(view, u);
+        return layout_.bounces == 0 ? direct(view, u + head_) : path(view, u, HashedStream(x, y, u, dims_));
     }
 
     static Color white(float value) { return {value, value, value}; }
@@ -242,11 +242,10 @@ protected:
 
     // Light over paths of up to layout.bounces reflections. Each reflection is lit by next event estimation and by its
     // sampled direction, if that meets a light; the balance heuristic weights the two (Veach and Guibas 1995).
-    Color path(const View &view, const float *u) const
+    Color path(const View &view, const float *u, HashedStream further) const
     {
         Ray ray = view.ray;
         Hit hit = view.hit;
-        HashedStream further(u, dims_);
         float drawn[5];
         Color sum = emitted(ray, hit), throughput{1, 1, 1};
         const uint32_t step = layout_.dims_per_bounce();

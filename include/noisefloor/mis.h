@@ -78,7 +78,8 @@ nf_status nf_omis_init(void *memory, size_t bytes, uint32_t techniques, uint32_t
     nf_omis **out);
 
 // Adds one sample, drawn by `technique`: every one, those of value 0 too, in whole rounds of the counts or from
-// technique k with probability n_k / sum n.
+// technique k with probability n_k / sum n. A draw that failed, without a point, has value 0, pdf 1 of its technique
+// and 0 of the others.
 // pdf[techniques]: the density of each technique at the point, finite, at least 0, that of the technique positive.
 // value[integrals]: each integrand there, not divided by any density, finite.
 // NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE.

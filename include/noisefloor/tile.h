@@ -29,13 +29,17 @@ typedef struct nf_sampler {
 // Sample `index` of pixel (x, y) in `frame`, any values of each. The samples of a pixel are one sequence, best at
 // powers of two. Frames are unrelated to each other: where they are averaged, leave the frame 0 and count the index
 // on.
+//
+// At indices 0 and 1 the numbers of all domains repeat every 32 pixels: an image has 1,024 different vectors. Seeds of
+// further numbers need the pixel, too.
 nf_sampler nf_sampler_pixel(uint32_t x, uint32_t y, uint32_t frame, uint32_t index);
 
-// As nf_sampler_pixel(), but the error is white over the image: for denoisers that were made for white noise.
+// As nf_sampler_pixel(), but the error is white over the image: for denoisers that were made for white noise. At
+// indices 0 and 1 a pixel has one of 1,024 vectors at random.
 nf_sampler nf_sampler_white(uint32_t x, uint32_t y, uint32_t frame, uint32_t index);
 
-// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent;
-// keys mean something only among the children of one parent.
+// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent, at
+// indices 0 and 1 as far as nf_sampler_pixel() says; keys mean something only among the children of one parent.
 nf_sampler nf_sampler_domain(nf_sampler sampler, uint32_t key);
 
 // An independent version of the sampler, and of its children, for each seed but 0, which changes nothing. All values

@@ -78,6 +78,44 @@ static void views()
     CHECK(count == 4);
 }
 
+// What keeps a pointer to an array takes no array that ends with the expression.
+template <class Taker> static void takes_what_stays(Taker)
+{
+    using room = std::vector<std::uint64_t>;
+    static_assert(std::is_invocable_v<Taker, room &> && std::is_invocable_v<Taker, nf::memory>, "it stays");
+    static_assert(!std::is_invocable_v<Taker, room>, "it ends first");
+}
+#define IT std::forward<decltype(it)>(it)
+#define TAKES_WHAT_STAYS(call) takes_what_stays([](auto &&it) -> decltype(call) { return {}; })
+
+static void lifetimes()
+{
+    TAKES_WHAT_STAYS(nf::accumulator::create(nf::config(), IT));
+    TAKES_WHAT_STAYS((nf::optimal_mis::create({}, 1, IT)));
+    TAKES_WHAT_STAYS(nf::optimal_gradient::create(2, 1, IT));
+    TAKES_WHAT_STAYS(std::declval<nf::table &>().init(IT, 5));
+    TAKES_WHAT_STAYS(std::declval<nf::table &>().init(IT, std::array<float, 2>{}));
+    TAKES_WHAT_STAYS(std::declval<nf::table &>().load(IT, std::array<unsigned char, 2>{}));
+    using values = std::vector<float>;
+    using kept = decltype(nf::samples::u);
+    static_assert(std::is_same_v<kept, decltype(nf::samples::known_integrals)> &&
+                      std::is_same_v<kept, decltype(nf::mis::point::pdf)>,
+                  "of one kind");
+    static_assert(std::is_convertible_v<values &, kept> && std::is_convertible_v<const values &, kept> &&
+                      std::is_convertible_v<nf::span<float>, kept> && std::is_convertible_v<float (&)[2], kept> &&
+                      std::is_constructible_v<kept, float *, std::size_t>,
+                  "they stay");
+    static_assert(!std::is_convertible_v<values, kept> && !std::is_convertible_v<const values, kept> &&
+                      !std::is_convertible_v<std::array<float, 2>, kept> && !std::is_assignable_v<kept &, values>,
+                  "they end first");
+    // What changes the sums is not for constants.
+    using nf::samples;
+    static_assert(std::is_invocable_v<decltype(&nf::accumulator::add), nf::accumulator &, samples> &&
+                      !std::is_invocable_v<decltype(&nf::accumulator::add), const nf::accumulator &, samples> &&
+                      !std::is_invocable_v<decltype(&nf::optimal_mis::merge), const nf::optimal_mis &, nf::optimal_mis>,
+                  "constants stay as they are");
+}
+
 static void configurations()
 {
     const nf_cv_config expected = make_config(2, 2, 1, NF_CV_ROBUST);
@@ -131,6 +169,13 @@ static void estimates()
     using nf::status;
     CHECK(CODE(nf::estimate(config, {span<const float>(u, 2 * n - 1), f}, workspace)) == status::range);
     CHECK(CODE(nf::estimate(config, {u, span<const float>(f, 0)}, workspace)) == status::no_samples);
+    // Rows of four numbers: without the stride they would pair each second value with the wrong numbers.
+    const span<const float> half_of_f(f, n / 2);
+    CHECK(CODE(nf::estimate(config, {u, half_of_f}, workspace)) == status::range);
+    CHECK(CODE(nf::estimate(config.with_stride(4), {u, half_of_f}, workspace)) == status::ok);
+    CHECK(CODE(nf::estimate(config.with_stride(4), {span<const float>(u, 2 * n - 2), half_of_f}, workspace)) ==
+          status::ok);
+    CHECK(CODE(nf::estimate(config.with_stride(UINT32_MAX), {u, span<const float>(f, 1)}, workspace)) == status::ok);
     CHECK(CODE(nf::estimate(config, {}, workspace)) == status::no_samples);
     CHECK(CODE(nf::estimate(config.with_controls(1), {u, f}, workspace)) == status::range);
     CHECK(CODE(nf::estimate(config, {u, f, f, {}}, workspace)) == status::range);
@@ -517,7 +562,7 @@ static void gradients()
     const float pdf[] = {0.1f, 0.2f, 0.3f, 0.1f}, each[] = {1.0f, 2.0f};
     const std::uint32_t technique[] = {0, 1};
     std::vector<std::uint64_t> room(nf::optimal_gradient::size(2, 1) / 8 + 1);
-    const nf::optimal_gradient state = value_of(nf::optimal_gradient::create(2, 1, room));
+    nf::optimal_gradient state = value_of(nf::optimal_gradient::create(2, 1, room));
     std::array<float, 1> out{};
     float weight[2];
     SUCCEED(state.estimate(10, pdf, technique, each, out));
@@ -548,6 +593,7 @@ int main()
     fill_uniform(u, n * 2, 3);
     fill_linear(f, u, n, 2, 1);
     views();
+    lifetimes();
     configurations();
     estimates();
     images();

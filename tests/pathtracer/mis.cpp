@@ -129,5 +129,10 @@ int main()
     lit.scene.layout.choice = true;
     furnish(lit.scene);
     estimates(lit, true);
+    // Its directions differ from the one to its centre less than cosines in float tell.
+    LitScene small{"a small sphere", {}};
+    Builder(small.scene).sphere_light({-1, 1.5f, 0}, .001f, {3e5f, 2e5f, 1e5f});
+    furnish(small.scene);
+    estimates(small, false);
     return finish();
 }

@@ -138,10 +138,21 @@ void pane()
     expect_near(render(scene, 2, 16, 1).mean(), 0.96 * 0.96, 1e-4, "a light behind a pane");
 }
 
+// The same vector in other pixels: other further numbers.
+void further_numbers()
+{
+    const float u[2] = {.25f, .5f};
+    auto first = [&](uint32_t x, uint32_t y) { return HashedStream(x, y, u, 2).next(); };
+    expect(first(3, 5) == first(3, 5), "further numbers are not those of a pixel and a vector");
+    expect(first(3, 5) != first(35, 5) && first(3, 5) != first(5, 3) && first(0, 0) != first(0, 32),
+           "further numbers are the same in two pixels");
+}
+
 } // namespace
 
 int main()
 {
+    further_numbers();
     direct_light();
     choice();
     furnaces();

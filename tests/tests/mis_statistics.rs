@@ -52,6 +52,54 @@ fn balance_and_progressive_are_unbiased() {
     }
 }
 
+/// A technique that fails a quarter of the time, its draws below a half: added as a point of its own, of any density,
+/// where f is 0, they leave balance and progressive unbiased and the others consistent. Left out, they bias all.
+#[test]
+fn failed_draws_count() {
+    let f = |x: f32| 1.0 + 3.0 * x * x;
+    let round = |rng: &mut Rng, omis: &mut OptimalMis<[f64; LEN]>, failed: Option<f32>| {
+        let rising = |x: f32| if x < 0.5 { 0.0 } else { 2.0 * x };
+        for technique in [0, 1, 1] {
+            let u = rng.uniform_f32();
+            let x = if technique == 0 { u } else { (1.0 - u).sqrt() };
+            if technique == 0 || x >= 0.5 {
+                omis.add(technique, &[1.0, rising(x)], &[f(x)]).unwrap();
+            } else if let Some(density) = failed {
+                omis.add(technique, &[0.0, density], &[0.0]).unwrap();
+            }
+        }
+    };
+    let mut rng = Rng::seed(60);
+    let (mut balance, mut progressive) = (Moments::default(), Moments::default());
+    let empty = || OptimalMis::new([0.0; LEN], &[1, 2], 1).unwrap();
+    let solve = |omis: &OptimalMis<[f64; LEN]>, solver| {
+        let mut out = [0.0];
+        omis.solve(solver, &mut out).unwrap();
+        f64::from(out[0])
+    };
+    for _ in 0..60_000 {
+        let mut omis = empty();
+        (0..3).for_each(|_| round(&mut rng, &mut omis, Some(1.0)));
+        omis.next_batch(Solver::default()).unwrap();
+        (0..3).for_each(|_| round(&mut rng, &mut omis, Some(1.0)));
+        balance.add(solve(&omis, Solver::Balance));
+        progressive.add(solve(&omis, Solver::Progressive));
+    }
+    let [b, p] = [balance, progressive].map(|moments| z(&moments, 2.0));
+    assert!(b.abs() < Z_LIMIT && p.abs() < Z_LIMIT, "balance {b:.2}, progressive {p:.2}");
+
+    let many = |failed| {
+        let (mut omis, mut rng) = (empty(), Rng::seed(61));
+        (0..100_000).for_each(|_| round(&mut rng, &mut omis, failed));
+        [Solver::Balance, Solver::Plain, Solver::default()].map(|solver| solve(&omis, solver))
+    };
+    assert_eq!(many(Some(1.0)), many(Some(0.125)));
+    for (right, wrong) in many(Some(1.0)).into_iter().zip(many(None)) {
+        assert!((right - 2.0).abs() < 0.02, "{right}");
+        assert!((wrong - 2.0).abs() > 0.1, "{wrong}");
+    }
+}
+
 /// The known defect of a public implementation: it adds sum alpha for every round but skips the samples whose value is
 /// 0, which should take their alpha p / S away again. As contributions, which carry their own part of alpha, samples of
 /// value 0 have mean 0 over the techniques: leaving them out costs variance alone.

@@ -290,6 +290,28 @@ fn places() {
     assert_eq!(drawn.len(), all.len());
 }
 
+/// The first two samples of pixels 32 apart are the same numbers in all domains, later ones are not; white pixels share
+/// theirs with others. As the documents say.
+#[test]
+fn first_two_samples_repeat() {
+    let vector =
+        |s: Sampler| [s.draw::<4>(), s.domain(7).draw(), s.domain(1).domain(0).draw()].map(|u| u.map(f32::to_bits));
+    let distinct = |make: fn(u32, u32) -> Sampler, index: u32| {
+        let all = (0..128 * 128).map(|pixel| vector(make(pixel % 128, pixel / 128).moved(0, 0, index)));
+        all.collect::<HashSet<_>>().len()
+    };
+    for make in [|x, y| Sampler::pixel(x, y, 3, 0), |x, y| Sampler::pixel(x, y, 0, 0).scramble(5)] {
+        assert_eq!([0, 1].map(|index| distinct(make, index)), [PIXELS as usize; 2]);
+        assert!(distinct(make, 2) > 4 * PIXELS as usize && distinct(make, 5) > 12 * PIXELS as usize);
+        for index in [0, 1] {
+            assert_eq!(vector(make(3, 70).moved(0, 0, index)), vector(make(35, 6).moved(0, 0, index)));
+        }
+    }
+    let white: fn(u32, u32) -> Sampler = |x, y| Sampler::white(x, y, 3, 0);
+    assert_eq!([0, 1].map(|index| distinct(white, index)), [PIXELS as usize; 2]);
+    assert!(distinct(white, 2) > 4 * PIXELS as usize);
+}
+
 proptest! {
     /// Whatever the fields: multiples of 2^-24 in [0, 1), the first of more numbers are those of fewer.
     #[test]

@@ -19,8 +19,9 @@ struct Directions {
     height: fn(f64) -> f64,
 }
 
-const NARROW: f32 = 0.9999;
-const WIDE: f32 = -0.4;
+/// Heights of caps.
+const NARROW: f32 = 1e-4;
+const WIDE: f32 = 1.4;
 
 const DIRECTIONS: [Directions; 6] = [
     Directions {
@@ -45,24 +46,24 @@ const DIRECTIONS: [Directions; 6] = [
         height: |z| 0.5 * (z + 1.0),
     },
     Directions {
-        name: "narrow cone",
-        warp: |u| uniform_cone(u, NARROW),
-        pdf: |d| uniform_cone_pdf(d, NARROW),
-        inverse: |d| uniform_cone_inverse(d, NARROW),
-        height: |z| ((z - f64::from(NARROW)) / (1.0 - f64::from(NARROW))).clamp(0.0, 1.0),
+        name: "narrow cap",
+        warp: |u| uniform_cap(u, NARROW),
+        pdf: |d| uniform_cap_pdf(d, NARROW),
+        inverse: |d| uniform_cap_inverse(d, NARROW),
+        height: |z| (1.0 - (1.0 - z) / f64::from(NARROW)).clamp(0.0, 1.0),
     },
     Directions {
-        name: "wide cone",
-        warp: |u| uniform_cone(u, WIDE),
-        pdf: |d| uniform_cone_pdf(d, WIDE),
-        inverse: |d| uniform_cone_inverse(d, WIDE),
-        height: |z| ((z - f64::from(WIDE)) / (1.0 - f64::from(WIDE))).clamp(0.0, 1.0),
+        name: "wide cap",
+        warp: |u| uniform_cap(u, WIDE),
+        pdf: |d| uniform_cap_pdf(d, WIDE),
+        inverse: |d| uniform_cap_inverse(d, WIDE),
+        height: |z| (1.0 - (1.0 - z) / f64::from(WIDE)).clamp(0.0, 1.0),
     },
     Directions {
-        name: "cone of every direction",
-        warp: |u| uniform_cone(u, -1.0),
-        pdf: |d| uniform_cone_pdf(d, -1.0),
-        inverse: |d| uniform_cone_inverse(d, -1.0),
+        name: "cap of every direction",
+        warp: |u| uniform_cap(u, 2.0),
+        pdf: |d| uniform_cap_pdf(d, 2.0),
+        inverse: |d| uniform_cap_inverse(d, 2.0),
         height: |z| 0.5 * (z + 1.0),
     },
 ];
@@ -108,8 +109,8 @@ fn turn(x: f32, y: f32) -> f64 {
 #[test]
 fn directions_have_the_stated_distribution() {
     for (seed, d) in DIRECTIONS.iter().enumerate() {
-        // z of the narrow cone is too coarse in f32 for fine cells: its radius says more.
-        let narrow = d.name == "narrow cone";
+        // z of the narrow cap is too coarse in f32 for fine cells: its radius says more.
+        let narrow = d.name == "narrow cap";
         let counts = grid(16, seed as u64, |u| {
             let w = (d.warp)(u);
             let z = if narrow { (1.0 - f64::from(w.x).powi(2) - f64::from(w.y).powi(2)).sqrt() } else { w.z.into() };
@@ -176,7 +177,7 @@ fn densities_are_those_of_the_warps() {
 #[test]
 fn densities_integrate_to_one() {
     let n = 2000;
-    for d in DIRECTIONS.iter().filter(|d| d.name != "narrow cone") {
+    for d in DIRECTIONS.iter().filter(|d| d.name != "narrow cap") {
         let total: f64 = (0..n)
             .map(|i| {
                 let z = 2.0 * (f64::from(i) + 0.5) / f64::from(n) - 1.0;
@@ -233,7 +234,7 @@ fn known_points() {
     assert_eq!(uniform_hemisphere(Vec2::X), Vec3::X);
     assert_eq!(uniform_hemisphere(Vec2::new(0.0, 0.5)), Vec3::Z);
     assert_eq!(uniform_sphere(Vec2::new(0.0, 0.5)), Vec3::Z);
-    assert!((uniform_cone(Vec2::X, 0.5).z - 0.5).abs() < 1e-6);
+    assert!((uniform_cap(Vec2::X, 0.5).z - 0.5).abs() < 1e-6);
     assert_eq!(uniform_sphere(Vec2::X), Vec3::NEG_Z);
     assert_eq!(cosine_hemisphere(Vec2::splat(0.5)), Vec3::Z);
     assert_eq!(cosine_hemisphere(Vec2::new(1.0, 0.5)), Vec3::X);
@@ -249,19 +250,20 @@ fn densities_outside_and_degenerate() {
     assert_eq!(cosine_hemisphere_pdf(down), 0.0);
     assert_eq!(cosine_hemisphere_pdf(level), 0.0);
     assert_eq!(cosine_hemisphere_pdf(up), std::f32::consts::FRAC_1_PI);
-    assert_eq!(uniform_cone_pdf(level, 0.5), 0.0);
+    assert_eq!(uniform_cap_pdf(level, 0.5), 0.0);
     assert_eq!(concentric_disc_pdf(Vec2::ONE), 0.0);
     // Just outside: what is tolerated there is rounding.
     assert_eq!(concentric_disc_pdf(1.001 * Vec2::X), 0.0);
-    for cos_max in [0.5_f32, 0.99] {
-        let z = cos_max - 1e-5;
-        assert_eq!(uniform_cone_pdf(Vec3::new((1.0 - z * z).sqrt(), 0.0, z), cos_max), 0.0);
+    for height in [1.5_f32, 0.5, 0.01] {
+        let z = 1.0 - height - 1e-5;
+        assert_eq!(uniform_cap_pdf(Vec3::new((1.0 - z * z).sqrt(), 0.0, z), height), 0.0);
     }
-    // A cone of no width is a delta distribution, as is a triangle without area.
-    for cos_max in [1.0, 2.0, f32::NAN] {
-        assert_eq!(uniform_cone(Vec2::splat(0.7), cos_max), up);
-        assert_eq!(uniform_cone_pdf(up, cos_max), f32::INFINITY);
-        assert!(inside(uniform_cone_inverse(up, cos_max)));
+    // A cap of no height is a delta distribution, as is a triangle without area.
+    for height in [0.0, -1.0, f32::NAN] {
+        assert_eq!(uniform_cap(Vec2::splat(0.7), height), up);
+        assert_eq!(uniform_cap_pdf(up, height), f32::INFINITY);
+        assert_eq!(uniform_cap_pdf(Vec3::new(1e-4, 0.0, 1.0), height), 0.0);
+        assert!(inside(uniform_cap_inverse(up, height)));
     }
     assert_eq!(uniform_triangle_pdf([up, up, level]), f32::INFINITY);
     assert_eq!(uniform_triangle_pdf([Vec3::NAN, up, level]), 0.0);
@@ -275,6 +277,24 @@ fn densities_outside_and_degenerate() {
         assert!(inside(concentric_disc_inverse(v.truncate())) && inside(uniform_triangle_inverse(v)));
     }
     assert_eq!(concentric_disc_pdf(Vec2::NAN), 0.0);
+}
+
+/// Towards spheres so small, or so far, that the cosine is 1 in f32: all digits of the density, and no wider.
+#[test]
+fn small_spheres_keep_their_digits() {
+    for ratio in [0.5_f32, 1e-3, 1.5e-4, 1e-6, 1e-12] {
+        let square = ratio * ratio;
+        let height = square / (1.0 + (1.0 - square).sqrt());
+        let exact = f64::from(ratio).powi(2) / (1.0 + (1.0 - f64::from(ratio).powi(2)).sqrt());
+        for u in edges() {
+            let d = uniform_cap(u, height);
+            let product = f64::from(uniform_cap_pdf(d, height)) * TAU * exact;
+            assert!((product - 1.0).abs() < 5e-7, "{ratio}, {u}: {product}");
+            assert!(f64::from(d.x).hypot(d.y.into()) <= f64::from(ratio) * (1.0 + 5e-7), "{ratio}, {u}: {d}");
+        }
+        let beside = ratio * (1.0 + 2e-6);
+        assert_eq!(uniform_cap_pdf(Vec3::new(beside, 0.0, (1.0 - beside * beside).sqrt()), height), 0.0, "{ratio}");
+    }
 }
 
 proptest! {

@@ -63,6 +63,11 @@ const fn record_len(techniques: usize) -> usize {
 /// is taken to be samples / sum n, so that without them every estimate is too large. The samples should make whole
 /// rounds of `counts`, or be drawn from technique j with probability n_j / sum n: a round interrupted in the middle
 /// over- or under-weights the techniques accordingly.
+///
+/// A draw that failed (no point: nothing below the horizon, say) is added too, with value 0, density 1 of the technique
+/// that drew it and 0 of the others. It stands for a point that only this technique has, at which f is 0: with it the
+/// technique's density integrates to 1, as everything here assumes. Any positive density says the same, as only p / S =
+/// 1 / n_j counts. Its [`optimal_contribution`](super::optimal_contribution) is 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OptimalMis<M> {
     counts: [u32; MAX_TECHNIQUES],

@@ -58,7 +58,9 @@ const WHITE: u32 = 2;
 
 impl Sampler {
     /// Sample `index` of pixel (x, y) in `frame`, any values of each. The root's numbers in frame 0 repeat every
-    /// [`table::SIZE`] pixels; elsewhere a pixel's samples are then in another order.
+    /// [`table::SIZE`] pixels; elsewhere a pixel's samples are then in another order, from index 2 on. Indices 0 and 1
+    /// have no other: all numbers of a pixel, of every domain, follow from x and y modulo 32, and an image has 1,024
+    /// different vectors. What is seeded from numbers needs the pixel, too.
     ///
     /// The samples of a pixel are one sequence, best at powers of two; take any number, and stop where you like. Each
     /// frame is the table at another place, unrelated to the others. Where frames are averaged, by a viewer or by TAA,
@@ -70,14 +72,14 @@ impl Sampler {
     }
 
     /// The same, but neighbours know nothing of each other: the error is that of each pixel, white over the image. For
-    /// denoisers that were made for white noise.
+    /// denoisers that were made for white noise. At indices 0 and 1 a pixel has one of 1,024 vectors at random.
     #[inline]
     pub const fn white(x: u32, y: u32, frame: u32, index: u32) -> Sampler {
         Sampler { flags: WHITE, ..Sampler::pixel(x, y, frame, index) }
     }
 
-    /// The child domain of a key. Children of different keys are unrelated to each other and to their parent; keys mean
-    /// something only among children of one parent.
+    /// The child domain of a key. Children of different keys are unrelated to each other and to their parent, at
+    /// indices 0 and 1 as far as [`pixel`](Sampler::pixel) says; keys mean something only among children of one parent.
     #[inline]
     #[must_use]
     pub const fn domain(self, key: u32) -> Sampler {

@@ -1,15 +1,17 @@
-//! Directions of the same density from the pole +z down to a rim: the sphere, the hemisphere, and a cone, the
-//! directions towards a sphere for one.
+//! Directions of the same density from the pole +z down to a rim: the sphere, the hemisphere, and a cap, the directions
+//! of a cone.
 //!
-//! A cone's `cos_max` is the cosine of its half-angle: 1 is the direction +z alone, 0 the hemisphere, -1 every
-//! direction. What lies outside -1..=1 is clamped, and NaN counts as 1.
+//! A cap's `height` is 1 - cos of the half-angle of its cone: 0 is the direction +z alone, 1 the hemisphere, 2 every
+//! direction. What lies outside 0..=2 is clamped, and NaN counts as 0. The cosine itself would not do: next to 1 floats
+//! are 6e-8 apart, which is all of a small light. A sphere of radius r, its centre at distance d, fills the cap of
+//! height s / (1 + sqrt(1 - s)), s = r^2 / d^2: that has all digits, however small it is.
 
-use super::frame::{is_direction, square, unit_square};
+use super::frame::{is_direction, square, unit, unit_square};
 use core::f64::consts::TAU;
 use glam::{Vec2, Vec3};
 
-/// Rounding of z to f32 may push a direction on the rim out of the cone by this much.
-const RIM: f64 = 1e-7;
+/// Rounding to f32 may push a direction on the rim down by this part of the height.
+const RIM: f64 = 3e-7;
 
 /// A uniform direction: u.x goes from the pole +z (0) to -z (1), u.y once around.
 pub fn uniform_sphere(u: Vec2) -> Vec3 {
@@ -41,47 +43,47 @@ pub fn uniform_hemisphere_inverse(direction: Vec3) -> Vec2 {
     cap_inverse(direction, 1.0)
 }
 
-/// A uniform direction with z >= `cos_max`: u.x is the part of the drop from the pole to the rim, u.y the turn.
-pub fn uniform_cone(u: Vec2, cos_max: f32) -> Vec3 {
-    cap(u, depth(cos_max))
+/// A uniform direction with z >= 1 - `height`: u.x is the part of the drop from the pole to the rim, u.y the turn.
+pub fn uniform_cap(u: Vec2, height: f32) -> Vec3 {
+    cap(u, clamped(height))
 }
 
-/// The density of [`uniform_cone`] per solid angle: 1/(2 pi (1 - cos_max)) in the cone, 0 outside. A cone of no width
-/// has infinite density.
-pub fn uniform_cone_pdf(direction: Vec3, cos_max: f32) -> f32 {
-    let depth = depth(cos_max);
-    if is_direction(direction) && 1.0 - f64::from(direction.z) <= depth + RIM {
-        (1.0 / (TAU * depth)) as f32
-    } else {
-        0.0
-    }
+/// The density of [`uniform_cap`] per solid angle: 1/(2 pi height) in the cap, 0 outside. A cap of no height has
+/// infinite density.
+pub fn uniform_cap_pdf(direction: Vec3, height: f32) -> f32 {
+    let height = clamped(height);
+    let is_inside = is_direction(direction) && drop(direction) <= height * (1.0 + RIM);
+    if is_inside { (1.0 / (TAU * height)) as f32 } else { 0.0 }
 }
 
-/// The point of the unit square that [`uniform_cone`] takes to `direction`.
-pub fn uniform_cone_inverse(direction: Vec3, cos_max: f32) -> Vec2 {
-    cap_inverse(direction, depth(cos_max))
+/// The point of the unit square that [`uniform_cap`] takes to `direction`.
+pub fn uniform_cap_inverse(direction: Vec3, height: f32) -> Vec2 {
+    cap_inverse(direction, clamped(height))
 }
 
-/// From the pole down to the rim, 1 - cos_max: in 0..=2.
-fn depth(cos_max: f32) -> f64 {
-    let depth = 1.0 - f64::from(cos_max);
-    if depth > 0.0 { if depth < 2.0 { depth } else { 2.0 } } else { 0.0 }
+/// Into 0..=2, NaN to 0.
+fn clamped(height: f32) -> f64 {
+    2.0 * unit(0.5 * f64::from(height))
 }
 
-/// The direction at height z = 1 - u.x `depth`, u.y turns about the pole.
-fn cap(u: Vec2, depth: f64) -> Vec3 {
+/// The direction that is u.x `height` below the pole, u.y turns about it.
+fn cap(u: Vec2, height: f64) -> Vec3 {
     let (part, turn) = unit_square(u);
-    let drop = part * depth;
+    let drop = part * height;
     // 1 - z^2 without the cancellation that 1 - z * z has near the pole.
     let radius = libm::sqrt(drop * (2.0 - drop));
     let (sin, cos) = libm::sincos(TAU * turn);
     Vec3::new((radius * cos) as f32, (radius * sin) as f32, (1.0 - drop) as f32)
 }
 
-fn cap_inverse(direction: Vec3, depth: f64) -> Vec2 {
+fn cap_inverse(direction: Vec3, height: f64) -> Vec2 {
+    let turn = libm::atan2(direction.y.into(), direction.x.into()) / TAU;
+    square(drop(direction) / height, if turn < 0.0 { turn + 1.0 } else { turn })
+}
+
+/// How far below the pole a direction is: 1 - z.
+fn drop(direction: Vec3) -> f64 {
     let [x, y, z] = direction.to_array().map(f64::from);
     // Near the pole z has lost what x and y still carry.
-    let drop = if z > 0.0 { (x * x + y * y) / (1.0 + z) } else { 1.0 - z };
-    let turn = libm::atan2(y, x) / TAU;
-    square(drop / depth, if turn < 0.0 { turn + 1.0 } else { turn })
+    if z > 0.0 { (x * x + y * y) / (1.0 + z) } else { 1.0 - z }
 }

@@ -26,7 +26,7 @@ mod disc;
 mod frame;
 mod triangle;
 
-pub use cap::{uniform_cone, uniform_cone_inverse, uniform_cone_pdf};
+pub use cap::{uniform_cap, uniform_cap_inverse, uniform_cap_pdf};
 pub use cap::{uniform_hemisphere, uniform_hemisphere_inverse, uniform_hemisphere_pdf};
 pub use cap::{uniform_sphere, uniform_sphere_inverse, uniform_sphere_pdf};
 pub use disc::{concentric_disc, concentric_disc_inverse, concentric_disc_pdf};
