@@ -48,7 +48,7 @@ def recommend(
 
     Returns:
         A `Recommendation`, by measurements in rendered images. Of stratified points without neighbours it is their
-        mean: a fit may do a little better, and for some integrands half as bad again.
+        mean: a fit may do a little better, and for some smooth integrands half as bad again.
     """
     out = _c.Recommendation()
     dims = _arrays.integer("dims", dims, 1, _arrays.MAX_U32)

@@ -280,8 +280,8 @@ def test_a_signals_handler_may_save():
 import signal, noisefloor
 table, saved = noisefloor.Table(100), []
 signal.signal(signal.SIGALRM, lambda *_: saved.append(table.state_dict()))
-signal.setitimer(signal.ITIMER_REAL, 1e-4, 1e-4)
-while len(saved) < 2000:
+signal.setitimer(signal.ITIMER_REAL, 1e-3, 1e-3)
+while len(saved) < 300:
     table.update(*table.draw(64))
 signal.setitimer(signal.ITIMER_REAL, 0)
 """
