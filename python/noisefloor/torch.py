@@ -19,6 +19,8 @@ from ._table import Table
 
 #: Weights nearer to 0, which optimal MIS may give, hide the gradient: such items keep their importance.
 LEAST_WEIGHT = 1e-3
+#: Of an importance, as float32.
+LARGEST = float(numpy.finfo(numpy.float32).max)
 
 
 class ImportanceBatchSampler(Sampler):
@@ -218,22 +220,28 @@ class ImportanceBatchSampler(Sampler):
             # The other processes are reached from the importances' device.
             index = self._gather(own.to(importance.device))
         importance = self._gather(importance).reshape(len(index), techniques).numpy()
+        index = index.numpy()
+        if not ((importance >= 0) & (importance <= LARGEST)).all():
+            known = self._known(importance, scaled)
+            index, importance = index[known], importance[known]
+        for j, table in enumerate(self._tables):
+            table.update(index, importance[:, j], 0.0 if first else self._momentum)
+
+    def _known(self, importance, scaled):
+        """Of which items of all processes the importance is one; refuses what must be."""
         narrow = _arrays.floats("importance", importance)
         finite, positive = numpy.isfinite(narrow).all(1), (narrow >= 0).all(1)
-        if scaled is None and not (finite & positive).all():
+        if scaled is None:
             for process in range(self._processes):
                 own = importance[process :: self._processes]
-                _arrays.check_positive(self._whose(process) + "importance", own[:, 0] if techniques == 1 else own)
+                _arrays.check_positive(self._whose(process) + "importance", own if own.shape[1] > 1 else own[:, 0])
         if scaled is False and not finite.all():
             item, process = divmod(int(finite.argmin()), self._processes)
             raise ValueError(
-                f"{self._whose(process)}logits.grad[{item}] is not finite: the loss is not, or a GradScaler multiplied it "
-                "and scale was not given"
+                f"{self._whose(process)}logits.grad[{item}] is not finite: the loss is not, or a GradScaler "
+                "multiplied it and scale was not given"
             )
-        known = finite & positive
-        index, narrow = index.numpy()[known], narrow[known]
-        for j, table in enumerate(self._tables):
-            table.update(index, narrow[:, j], 0.0 if first else self._momentum)
+        return finite & positive
 
     def _whose(self, process):
         """The process's name, where there are several."""
@@ -317,7 +325,8 @@ class ImportanceBatchSampler(Sampler):
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Goes on where `state_dict` was called: the next `iter` gives what was left of the epoch. Of the constructor's
-        arguments `n`, `batch_size` and `techniques` must be the same, and `seed` becomes the state's."""
+        arguments `n`, `batch_size` and `techniques` must be the same, and `seed` becomes the state's. Several
+        techniques take the memory of one more table meanwhile."""
         mine = {"n": self._n, "whole_batch": self._whole, "tables": len(self._tables)}
         its = {"n": state["n"], "whole_batch": state["whole_batch"], "tables": len(state["tables"])}
         if mine != its:
