@@ -23,8 +23,8 @@ class Table:
     fraction. Its weight is 1 / (n p_i), but for "distinct": the mean of weight times gradient estimates the gradient of
     the mean loss without bias. A draw and an update take time of O(log n). 4.6 bytes per item.
 
-    Any number of threads may use one table; a process forked while another thread does may not. Tables can be pickled
-    and copied; a copy draws the same minibatches.
+    Any number of threads may use one table, and a signal's handler may call `state_dict`; a process forked while
+    another thread uses it may not. Tables can be pickled and copied; a copy draws the same minibatches.
 
     Args:
         n: how many items, 1 to 2**32 - 1.
@@ -54,7 +54,7 @@ class Table:
     def _prepare(self, n):
         """Memory for n items, and none yet for batches."""
         self._n = n
-        self._table, self._rng, self._lock = _c.Table(), _c.Rng(), threading.Lock()
+        self._table, self._rng, self._lock = _c.Table(), _c.Rng(), threading.RLock()
         self._at, self._rng_at = _c.address(self._table), _c.address(self._rng)
         self._memory = _c.workspace(_c.table_size(n))
         # Where the library reads and writes batches, so that their addresses need not be asked for each time.
@@ -147,8 +147,8 @@ class Table:
         Args:
             index: integers, 0 to n - 1, of shape (batch,) or any other. An item that comes twice is changed twice.
             importance: of index's shape, finite and at least 0: the norm of each item's gradient, say. Only ratios
-                count.
-            momentum: 0 to 1. 0 forgets the old value.
+                count, once no item has the 1 any more that it begins with.
+            momentum: 0 to 1. 0 forgets the old value: for an item's first, where that 1 stands for nothing.
         """
         if type(index) is not numpy.ndarray:
             index = _arrays.array("index", index)

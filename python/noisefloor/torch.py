@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import zlib
 from collections import deque
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -18,6 +19,8 @@ from ._table import Table
 
 #: Weights nearer to 0, which optimal MIS may give, hide the gradient: such items keep their importance.
 LEAST_WEIGHT = 1e-3
+#: Of an importance, as float32.
+LARGEST = float(numpy.finfo(numpy.float32).max)
 
 
 class ImportanceBatchSampler(Sampler):
@@ -36,17 +39,18 @@ class ImportanceBatchSampler(Sampler):
     The first epoch visits every item once, with weights of 1; its last batch is filled up with items from its start.
     Later ones draw with replacement. An epoch counts once `batch` was called for all of its batches.
 
-    In data-parallel training every process makes the same sampler and gets its part of each batch; what `update` is
-    told is gathered, so that all have the same table. Gradients are averaged over processes, as
-    `DistributedDataParallel` does.
+    In data-parallel training every process makes the same sampler, after `init_process_group`, and gets its part of
+    each batch; what `update` is told is gathered, so that all have the same table. Gradients are averaged over
+    processes, as `DistributedDataParallel` does.
 
     Args:
         n: how many items the data set has, 1 to 2**32 - 1.
         batch_size: items in a batch, of each process.
         steps: batches in an epoch; None: n / batch_size / processes, rounded up.
         warmup: "epoch": each item once before any is drawn by importance; None: importances begin as 1.
-        uniform_fraction: the part of draws that are uniform, 0 to 1; no weight is above 1 / uniform_fraction.
-        momentum: 0 to 1: of an item's importance, from one visit to the next.
+        uniform_fraction: the part of draws that are uniform, 0 to 1; with one technique no weight is above
+            1 / uniform_fraction.
+        momentum: 0 to 1: of an item's importance, from one visit to the next; none in the first epoch.
         techniques: 1 to 16 tables; more than 1 is optimal multiple importance sampling of the output's derivatives.
             Even, a divisor of the batch of all processes, and at most twice as many as outputs. Weights are then
             slightly biased and may be negative.
@@ -70,10 +74,9 @@ class ImportanceBatchSampler(Sampler):
         seed: int = 0,
         process_group: Any = None,
     ) -> None:
-        distributed = torch.distributed.is_available() and torch.distributed.is_initialized()
-        self._group = process_group
-        self._rank = torch.distributed.get_rank(process_group) if distributed else 0
-        self._processes = torch.distributed.get_world_size(process_group) if distributed else 1
+        self._distributed, self._group = is_distributed(), process_group
+        self._rank = torch.distributed.get_rank(process_group) if self._distributed else 0
+        self._processes = torch.distributed.get_world_size(process_group) if self._distributed else 1
         if self._rank < 0:
             raise ValueError(f"process_group is {process_group}: it must be one that this process belongs to")
         self._n = _arrays.integer("n", n, 1, _arrays.MAX_U32)
@@ -93,6 +96,7 @@ class ImportanceBatchSampler(Sampler):
         # Seeds that no other sampler's tables have, unless its seed is as far away as nobody counts.
         seeds = [(self._seed + j * 0x9E3779B97F4A7C15) % 2**64 for j in range(techniques)]
         self._tables = [Table(self._n, uniform_fraction=uniform_fraction, seed=own) for own in seeds]
+        self._fraction = self._tables[0].uniform_fraction
         self.epoch = 0
         self._drawn = self._step = self._unasked = 0
         self._ahead, self._replay, self._last, self._resumed = deque(), deque(), None, False
@@ -164,6 +168,8 @@ class ImportanceBatchSampler(Sampler):
         """Index and weight, int64 and float32 tensors of shape (batch_size,) on the CPU, of the batch that the
         loader has just handed over; once for each batch. The mean of weight times loss estimates the mean loss over all
         items."""
+        if not self._distributed and is_distributed() and torch.distributed.get_world_size() > 1:
+            raise RuntimeError("this sampler knows of no other process: make it after init_process_group")
         if not self._ahead:
             raise RuntimeError(
                 "batch() is for each batch of the loader, once: there is none that it was not called for"
@@ -185,14 +191,17 @@ class ImportanceBatchSampler(Sampler):
 
         Args:
             importance: shape (batch_size,), finite, at least 0; with several techniques (batch_size, techniques). Only
-                ratios count.
+                ratios count, once no item has the 1 any more that it begins with.
             index: integers of shape (batch_size,); None: the items of the last `batch`. As many in every process.
         """
         self._learn(importance, index)
 
-    def _learn(self, importance, index=None, skip=False):
-        """`update`; skip: leaves out items of negative importance, which no norm is."""
-        first = self._last is not None and self._last[2] and index is None
+    def _learn(self, importance, index=None, scaled=None):
+        """`update`, and `update_from`: leaves out items of negative importance, which no norm is, and those that
+        overflowed where the loss was scaled."""
+        # Until all were visited once, what was is the 1 that stands for nothing.
+        handed = self._drawn - len(self._ahead) - len(self._replay)
+        first = self._last[2] if self._last is not None else handed < max(self._warmup, 1)
         if index is None:
             own = self._own(0)
         else:
@@ -210,19 +219,41 @@ class ImportanceBatchSampler(Sampler):
         else:
             # The other processes are reached from the importances' device.
             index = self._gather(own.to(importance.device))
-        importance = self._gather(importance).reshape(len(index), techniques)
-        known = ~(importance < 0).any(1) if skip else slice(None)
-        index, importance = index[known].numpy(), importance[known].numpy()
-        if techniques > 1:  # one table refuses by itself; of several none may have been changed before
-            _arrays.check_positive("importance", importance)
+        importance = self._gather(importance).reshape(len(index), techniques).numpy()
+        index = index.numpy()
+        if not ((importance >= 0) & (importance <= LARGEST)).all():
+            known = self._known(importance, scaled)
+            index, importance = index[known], importance[known]
         for j, table in enumerate(self._tables):
             table.update(index, importance[:, j], 0.0 if first else self._momentum)
+
+    def _known(self, importance, scaled):
+        """Of which items of all processes the importance is one; refuses what must be."""
+        narrow = _arrays.floats("importance", importance)
+        finite, positive = numpy.isfinite(narrow).all(1), (narrow >= 0).all(1)
+        if scaled is None:
+            for process in range(self._processes):
+                own = importance[process :: self._processes]
+                _arrays.check_positive(self._whose(process) + "importance", own if own.shape[1] > 1 else own[:, 0])
+        if scaled is False and not finite.all():
+            item, process = divmod(int(finite.argmin()), self._processes)
+            raise ValueError(
+                f"{self._whose(process)}logits.grad[{item}] is not finite: the loss is not, or a GradScaler "
+                "multiplied it and scale was not given"
+            )
+        return finite & positive
+
+    def _whose(self, process):
+        """The process's name, where there are several."""
+        return f"process {process}'s " if self._processes > 1 else ""
 
     def _gather(self, own):
         """The parts of all processes, in the order of the whole batch, on the CPU."""
         if self._processes == 1:
             return own.cpu()
-        own = own.contiguous()
+        # Beside them goes which batch they are of: 24 bits, which any type of theirs holds.
+        batch = 0 if self._last is None else zlib.crc32(self._last[0].tobytes()) >> 8
+        own = torch.cat([own, own.new_full((1, *own.shape[1:]), batch)])
         backend = torch.distributed.get_backend(self._group)
         # Each reaches the others from its own kind of memory only.
         if backend == "gloo":
@@ -231,7 +262,13 @@ class ImportanceBatchSampler(Sampler):
             own = own if own.is_cuda else own.cuda()
         parts = [torch.empty_like(own) for _ in range(self._processes)]
         torch.distributed.all_gather(parts, own, group=self._group)
-        return torch.stack(parts, 1).flatten(0, 1).cpu()
+        whole = torch.stack(parts, 1).cpu()
+        if (whole[-1] != batch).any():
+            raise RuntimeError(
+                "processes have parts of different batches: all must make the sampler alike, load the same state, and "
+                "ask for as many batches between updates"
+            )
+        return whole[:-1].flatten(0, 1)
 
     @torch.no_grad()
     def update_from(self, logits: torch.Tensor, *, reduction: str = "mean", scale: float = 1.0) -> None:
@@ -241,8 +278,9 @@ class ImportanceBatchSampler(Sampler):
         Args:
             logits: the model's outputs, (batch_size,) or (batch_size, ...), any loss's.
             reduction: "mean" or "sum": how the weighted losses of the batch were added up.
-            scale: what the loss was multiplied by besides, 1e-30 to 3.4e38, by a GradScaler say. Derivatives that are
-                infinite, for which that leaves a step out, are refused.
+            scale: what the loss was multiplied by besides, 1e-30 to 3.4e38: `scaler.get_scale()` of a GradScaler,
+                before `scaler.update()`. If it is not 1, items whose derivatives overflowed are left out, as the
+                scaler leaves out the step; else they are refused.
         """
         scale = _arrays.number("scale", scale, 1e-30, 3.4e38)
         if logits.grad is None:
@@ -255,7 +293,7 @@ class ImportanceBatchSampler(Sampler):
         count = _arrays.one_of("reduction", reduction, {"mean": len(weight), "sum": 1})
         gradient = logits.grad.float().reshape(len(weight), -1) * (count / scale) / weight[:, None]
         if len(self._tables) == 1:
-            self._learn(gradient.norm(dim=1))
+            self._learn(gradient.norm(dim=1), scaled=scale != 1)
             return
         groups = len(self._tables) // 2
         if gradient.shape[1] < groups:
@@ -265,11 +303,12 @@ class ImportanceBatchSampler(Sampler):
         parts = [sign[:, group::groups].norm(dim=1) for group in range(groups) for sign in signs]
         importance = torch.stack(parts, 1)
         importance[weight.abs() < LEAST_WEIGHT] = -1
-        self._learn(importance, skip=True)
+        self._learn(importance, scaled=scale != 1)
 
     def state_dict(self) -> dict[str, Any]:
-        """All that decides the batches to come, those that workers were asked for included: tensors and numbers, which
-        `torch.load` reads with `weights_only=True`. After `update`, not between `batch` and it."""
+        """All that decides the batches to come, those that workers were asked for included, but for the constructor's
+        arguments: tensors and numbers, which `torch.load` reads with `weights_only=True`. After `update`, not between
+        `batch` and it."""
         ahead = [*self._ahead, *self._replay]
         tables = [table.state_dict() for table in self._tables]
         return {
@@ -285,18 +324,26 @@ class ImportanceBatchSampler(Sampler):
         }
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Goes on where `state_dict` was called: the next `iter` gives what was left of the epoch."""
+        """Goes on where `state_dict` was called: the next `iter` gives what was left of the epoch. Of the constructor's
+        arguments `n`, `batch_size` and `techniques` must be the same, and `seed` becomes the state's. Several
+        techniques take the memory of one more table meanwhile."""
         mine = {"n": self._n, "whole_batch": self._whole, "tables": len(self._tables)}
         its = {"n": state["n"], "whole_batch": state["whole_batch"], "tables": len(state["tables"])}
         if mine != its:
             raise ValueError(f"the state is another sampler's: it has {its}, this one {mine}")
         # Nothing of this sampler changes before all of the state has been read.
-        tables = [Table(self._n) for _ in self._tables]
-        for table, saved, rng in zip(tables, state["tables"], state["rng"]):
-            table.load_state_dict({"table": saved, "rng": rng})
         replay = deque((*(_arrays.array("ahead", part) for part in parts), first) for *parts, first in state["ahead"])
-        self._seed, self.epoch, self._drawn, self._step = (state[name] for name in ("seed", "epoch", "drawn", "step"))
-        self._tables, self._replay, self._last = tables, replay, None
+        seed, epoch, drawn, step = (state[name] for name in ("seed", "epoch", "drawn", "step"))
+        tables = [{"table": table, "rng": rng} for table, rng in zip(state["tables"], state["rng"])]
+        if len(tables) > 1:  # one table refuses by itself; of several none may have been changed before
+            spare = Table(self._n)
+            for table in tables:
+                spare.load_state_dict(table)
+        for own, table in zip(self._tables, tables):
+            own.load_state_dict(table)
+            own.uniform_fraction = self._fraction
+        self._seed, self.epoch, self._drawn, self._step = seed, epoch, drawn, step
+        self._replay, self._last = replay, None
         self._ahead.clear()
         self._unasked = 0
         # At the end of an epoch the next begins.
@@ -304,6 +351,11 @@ class ImportanceBatchSampler(Sampler):
 
 
 WARMUPS = {"epoch": True, None: False}
+
+
+def is_distributed() -> bool:
+    """Whether this process has joined others."""
+    return torch.distributed.is_available() and torch.distributed.is_initialized()
 
 
 def cross_entropy_importance(logits: torch.Tensor, target: torch.Tensor) -> torch.Tensor:

@@ -275,6 +275,19 @@ def test_threads_share_a_table():
     assert sorted(found) == sorted((*index, *weight) for index, weight in expected)
 
 
+def test_a_signals_handler_may_save():
+    program = """
+import signal, noisefloor
+table, saved = noisefloor.Table(100), []
+signal.signal(signal.SIGALRM, lambda *_: saved.append(table.state_dict()))
+signal.setitimer(signal.ITIMER_REAL, 1e-3, 1e-3)
+while len(saved) < 300:
+    table.update(*table.draw(64))
+signal.setitimer(signal.ITIMER_REAL, 0)
+"""
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
+
+
 def pages():
     """Of this process in memory."""
     with open("/proc/self/statm", encoding="ascii") as file:

@@ -5,6 +5,7 @@ import io
 import os
 import pickle
 import signal
+import tracemalloc
 import warnings
 
 import numpy
@@ -112,6 +113,17 @@ def test_a_refused_state_changes_nothing():
         with pytest.raises(error):
             sampler.load_state_dict(wrong)
     assert equal(run_techniques(sampler), run_techniques(same))
+
+
+def test_a_state_is_loaded_in_place_and_leaves_what_the_constructor_was_told():
+    state = ImportanceBatchSampler(1_000_000, 10, uniform_fraction=0.5, warmup=None).state_dict()
+    sampler = ImportanceBatchSampler(1_000_000, 10, uniform_fraction=0.1, warmup=None)
+    tracemalloc.start()
+    sampler.load_state_dict(state)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 1e5
+    assert abs(sampler._tables[0].uniform_fraction - 0.1) < 1e-6
 
 
 def test_a_state_is_read_from_tensors_that_numpy_does_not_see():
@@ -238,7 +250,7 @@ def test_any_numbers_update():
     fixed = norms.astype(numpy.float32)
     fixed.setflags(write=False)
     expected = noisefloor.Table(10)
-    expected.update(index, norms)
+    expected.update(index, norms, 0.0)
     for of, at in (
         (norms.tolist(), index.tolist()),
         (norms[::-1].copy()[::-1], index.astype(numpy.uint32)),
@@ -251,6 +263,46 @@ def test_any_numbers_update():
             warnings.simplefilter("error")
             sampler.update(of, at)
         assert numpy.array_equal(sampler._tables[0].probabilities(), expected.probabilities())
+
+
+@pytest.mark.parametrize("warmup", ["epoch", None])
+def test_first_importances_are_not_averaged_with_what_all_items_begin_with(warmup):
+    sampler = ImportanceBatchSampler(10, 2, warmup=warmup)
+    if warmup:
+        next(iter(sampler))
+        sampler.batch()
+    q = numpy.array([1e-3, 9e-3] + 8 * [1e-3])
+    sampler.update(q, range(10))
+    assert numpy.allclose(sampler._tables[0].probabilities(), 0.8 * q / q.sum() + 0.02)
+    run(sampler)
+    run(sampler, stop=1)
+    before = sampler._tables[0].probabilities(5) - 0.02
+    sampler.update([0.0], [5])
+    assert 0.29 < (sampler._tables[0].probabilities(5) - 0.02) / before < 0.4
+
+
+@pytest.mark.parametrize("techniques", [1, 2])
+def test_what_overflows_is_left_out_where_the_loss_was_scaled(techniques):
+    sampler = ImportanceBatchSampler(8, 4, techniques=techniques)
+    batches = iter(sampler)
+
+    def step(scale, bad=()):
+        next(batches)
+        index, weight = sampler.batch()
+        logits = torch.zeros(4, 2, requires_grad=True)
+        (scale * (weight * 2 * logits[:, 0]).mean()).backward()
+        logits.grad[list(bad)] = float("inf")
+        sampler.update_from(logits, scale=scale)
+        return index
+
+    step(65536.0)
+    left_out = step(32768.0, [1])[1]
+    q = numpy.full(8, 2.0)
+    q[left_out] = 1  # with which all begin
+    assert numpy.allclose(sampler._tables[0].probabilities(), 0.8 * q / q.sum() + 0.025)
+    batches = iter(sampler)
+    with pytest.raises(ValueError, match=r"^logits.grad\[1\] is not finite: the loss is not, or a GradScaler"):
+        step(1.0, [1, 3])
 
 
 class Other(torch.Tensor):
@@ -320,9 +372,23 @@ def test_several_techniques_weigh_and_learn():
     assert abs(torch.stack(means[10:]).mean() - 1) < 0.1
 
 
-def _replica(rank, world, file, results, workers):
-    train.begin()
+def join(rank, world, file):
+    """Meets the other processes."""
     torch.distributed.init_process_group("gloo", f"file://{file}", rank=rank, world_size=world)
+
+
+def leave(results):
+    """Ends this process, once what it says has been read."""
+    results.close()
+    results.join_thread()
+    torch.distributed.barrier()
+    # What PyTorch 1.13 does at its end can wait for ever for a process that has ended.
+    os._exit(0)
+
+
+def _replica(rank, world, file, workers, results):
+    train.begin()
+    join(rank, world, file)
     group = torch.distributed.new_group([0])
     if rank > 0:
         with pytest.raises(ValueError, match="process_group is .*: it must be one that this process belongs to"):
@@ -336,31 +402,72 @@ def _replica(rank, world, file, results, workers):
             seen.append(index.tolist())
             train.step(model, optimizer, sampler, x, y, weight)
     results.put((rank, train.digest(model.module, sampler), seen))
-    results.close()
-    results.join_thread()
-    torch.distributed.barrier()
-    # What PyTorch 1.13 does at its end can wait for ever for a process that has ended.
-    os._exit(0)
+    leave(results)
 
 
-@pytest.mark.parametrize("world, workers", [(2, 0), (2, 1), (4, 0)])
-def test_replicas_stay_the_same_and_share_each_batch(tmp_path, world, workers):
+def together(target, world, *arguments):
+    """What so many processes say of themselves, in the order of their ranks."""
     results = PROCESSES.Queue()
-    file = str(tmp_path / "meeting")
-    processes = [
-        PROCESSES.Process(target=_replica, args=(rank, world, file, results, workers)) for rank in range(world)
-    ]
+    processes = [PROCESSES.Process(target=target, args=(rank, world, *arguments, results)) for rank in range(world)]
     for process in processes:
         process.start()
     found = sorted(results.get(timeout=120) for _ in processes)
     for process in processes:
         process.join(60)
         process.kill()
+    return found
+
+
+@pytest.mark.parametrize("world, workers", [(2, 0), (2, 1), (4, 0)])
+def test_replicas_stay_the_same_and_share_each_batch(tmp_path, world, workers):
+    found = together(_replica, world, str(tmp_path / "meeting"), workers)
     assert len({digest for _, digest, _ in found}) == 1
     alone = ImportanceBatchSampler(train.ITEMS, train.BATCH, seed=6)
     first = [index for index, _ in run(alone)]
     shared = [torch.tensor(parts).T.flatten() for parts in zip(*(seen for _, _, seen in found))]
     assert equal([[batch] for batch in first], [[batch] for batch in shared[: len(first)]])
+
+
+def _stray(rank, world, file, results):
+    """What goes wrong in one process alone."""
+    train.begin()
+    early = ImportanceBatchSampler(640, 4)
+    next(iter(early))
+    join(rank, world, file)
+    with pytest.raises(RuntimeError, match="make it after init_process_group"):
+        early.batch()
+    sampler = ImportanceBatchSampler(640, 4, warmup=None)
+    batches = iter(sampler)
+
+    def step(scale=1.0, bad=1.0):
+        next(batches)
+        index, weight = sampler.batch()
+        logits = torch.ones(4, 1, requires_grad=True)
+        (scale * (weight * (index + 1) * logits[:, 0]).mean()).backward()
+        logits.grad[2] *= bad if rank == 1 else 1
+        sampler.update_from(logits, scale=scale)
+        return index.tolist()
+
+    step()
+    left_out = step(2.0, float("inf"))[2]
+    with pytest.raises(ValueError, match=r"^process 1's logits.grad\[2\] is not finite"):
+        step(1.0, float("nan"))
+    with pytest.raises(ValueError, match=r"^process 1's importance\[3\] is nan: it must be"):
+        sampler.update([1.0, 1.0, 1.0, float("nan") if rank == 1 else 1.0])
+    results.put((rank, left_out, sampler._tables[0].probabilities().tolist()))
+    if rank == 1:
+        next(batches)
+    step()
+    for _ in range(2):
+        with pytest.raises(RuntimeError, match="processes have parts of different batches"):
+            step()
+    leave(results)
+
+
+def test_what_goes_wrong_in_one_process_is_known_to_all(tmp_path):
+    (_, kept, p), (_, left_out, same) = together(_stray, 2, str(tmp_path / "meeting"))
+    # Of the importances that all begin with, one is 1 still, and another is not.
+    assert p == same and p[left_out] < p[kept]
 
 
 @pytest.mark.parametrize(
@@ -406,7 +513,7 @@ def test_a_refused_importance_of_one_technique_changes_no_other(bad):
     logits.sum().backward()
     if bad != -1.0:
         logits.grad[0, 0] = bad
-        with pytest.raises(ValueError, match=r"importance\[0, \d\] is"):
+        with pytest.raises(ValueError, match=r"logits.grad\[0\] is not finite: the loss is not, or a GradScaler"):
             sampler.update_from(logits)
     after = [table.state_dict() for table in sampler._tables]
     assert all(numpy.array_equal(a["table"], b["table"]) for a, b in zip(before, after))

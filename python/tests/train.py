@@ -61,7 +61,7 @@ def main(checkpoint, workers, techniques, say):
         optimizer.load_state_dict({"state": state["optimizer"], "param_groups": groups})
         sampler.load_state_dict(state["sampler"])
         torch.set_rng_state(state["rng"])
-    loader = DataLoader(data(), batch_sampler=sampler, num_workers=workers, generator=torch.Generator())
+    loader = DataLoader(data(), batch_sampler=sampler, num_workers=workers, generator=torch.Generator().manual_seed(1))
     for _ in range(sampler.epoch, EPOCHS):
         for x, y in loader:
             _, weight = sampler.batch()
