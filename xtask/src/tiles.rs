@@ -13,8 +13,8 @@ use std::path::Path;
 pub struct Options {
     /// Which tiles, such as 64_1SPP_2D [default: all]
     names: Vec<String>,
-    /// Make them elsewhere, and fail if a byte differs from those in core/tiles, or a sidecar says another thing. Of all
-    /// tiles: also run fsot's longest tests
+    /// Make them elsewhere, and fail if a byte differs from those in core/tiles, or a sidecar says another thing;
+    /// without names, run fsot's longest tests too
     #[arg(long)]
     check: bool,
     /// Threads to work on [default: one per core]

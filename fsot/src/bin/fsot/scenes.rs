@@ -103,7 +103,7 @@ impl Judged {
     }
 
     /// Raw over that of others, of n samples: geometric means over scenes and places, with half an interval of 95 % for
-    /// that over all places. The samples are the same in all of them: how much others of their kind differ it leaves out.
+    /// that over all places. The samples are the same in all of them: how others of their kind differ it does not say.
     fn beside(&self, others: &Judged) -> Vec<(f64, f64)> {
         let scenes = self.errors.len() as f64;
         let ratio = |(own, other): (&[f64; PLACES], &[f64; PLACES])| {
@@ -155,8 +155,8 @@ fn describe(scenes: &[String], judged: &[Judged]) -> (String, Value) {
             let most = ratios.len();
             let name = &sampler.name;
             let what = format!("{ratio:.3} +- {half:.3} of {}'s at {count}", owen.name);
-            let note = "+- by where the image lies in these very samples, not by other seeds; as the largest of many, it \
-                        tends to be too large";
+            let note = "+- by where the image lies in these very samples, not by other seeds; as the largest of many, \
+                        it tends to be too large";
             writeln!(text, "{name:<22} raw, worst of 1 to {most} samples: {what} ({note})").unwrap_or(());
         }
     }
