@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// A class (w, mu) and its weight kappa (5.17).
 #[derive(Clone)]
 pub struct Class {
-    /// Which points it takes, and which subsets of them.
+    /// Which points it takes, and which subsets of them. Thresholds go up to its largest value at a point, not to 1.
     pub function: ClassFunction,
     /// What they shall be distributed like, at every threshold.
     pub target: Arc<dyn Target>,
@@ -23,7 +23,7 @@ pub struct Class {
 /// Where the points are in the space of the class functions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ClassCoordinates {
-    /// Point i of n is at (i + 1/2) / n, below 1.
+    /// Point i of n is at (i + 1/2) / n, below 1. As an `f32`: beyond 2^23 points neighbours share places.
     Index,
     /// Every point's place in the image plane, in [0, 1]^2.
     Plane(Vec<[f32; 2]>),

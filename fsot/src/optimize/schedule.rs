@@ -82,7 +82,7 @@ impl Schedule {
 
     /// The step of an iteration, relative to the way to the targets. It falls exponentially from twice the way, which
     /// leaves bad places behind, to a small part of it, which averages over many directions; once in windows, and once
-    /// again behind them.
+    /// again behind them. Before windows it is 1.
     pub(crate) fn step(&self, iteration: u64) -> f32 {
         let falling = |to: f64, from: u64, until: u64| {
             (2.0 * libm::pow(to / 2.0, (iteration - from) as f64 / (until - from) as f64)) as f32

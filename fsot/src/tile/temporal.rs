@@ -11,11 +11,11 @@ pub const FRAME_RATE: f32 = 60.0;
 /// Frames of [`TemporalKernel::Mantiuk`], a second: the eye has answered long before its end.
 const EYE: usize = 60;
 
-/// The weight, relative to the largest, below which a temporal kernel ends.
+/// The largest weight, relative to the largest of a temporal kernel, that counts as none.
 const CUT: f32 = 0.05;
 
-/// The temporal class function of a frame: the weights of that frame and of those before it. Time wraps around like the
-/// image, so that the animation loops.
+/// The temporal class function of a frame: the weights of that frame and of those before it, those up to a twentieth of
+/// the largest left out. Time wraps around like the image, so that the animation loops.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TemporalKernel {
     /// The exponential moving average of temporal anti-aliasing, `a (1 - a)^k` for the frame k frames ago, cut
