@@ -205,9 +205,9 @@ impl<'a> Row<'a> {
         Ok(Estimate { value: value?, low: low?, high: high?, seeds: 2 })
     }
 
-    /// None for an empty cell.
+    /// None for an empty cell, or a dash.
     pub(crate) fn optional(&self, heading: &str) -> Result<Option<f64>> {
-        if self.word(heading)?.is_empty() { Ok(None) } else { self.number(heading).map(Some) }
+        if matches!(self.word(heading)?, "" | "-") { Ok(None) } else { self.number(heading).map(Some) }
     }
 }
 
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn cells_are_found_by_their_headings() -> Result<()> {
-        let table = Table::parse("name;n;x\na, b;1;2.5e-1\nc;2;\na, b;4;3\n", "t.csv")?;
+        let table = Table::parse("name;n;x\na, b;1;2.5e-1\nc;2;-\na, b;4;3\n", "t.csv")?;
         assert_eq!(table.distinct("name")?, ["a, b", "c"]);
         let some = table.of(&[("name", "a, b")]);
         assert_eq!((some.distinct("n")?, some.numbers("x")?), (vec!["1", "4"], vec![0.25, 3.0]));
