@@ -1,7 +1,7 @@
 //! Checkpoints: an interrupted optimisation continues with the same bits.
 //!
-//! A file is, little-endian: `FSOTCKP1`, the length of the header (u32), the header (JSON: version, problem, iteration,
-//! number of coordinates), the coordinates (f32), the SHA-256 of all of that.
+//! A file is, little-endian: `FSOTCKP1`, the length of the header (u32), the header (JSON: version, program, problem,
+//! iteration, number of coordinates), the coordinates (f32), the SHA-256 of all of that.
 
 pub use crate::digest::digest;
 
@@ -14,6 +14,7 @@ use sha2::{Digest, Sha256};
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
 use std::path::Path;
+use std::sync::OnceLock;
 
 const MAGIC: &[u8; 8] = b"FSOTCKP1";
 const DIGEST: usize = 32;
@@ -31,6 +32,9 @@ pub struct Problem {
 #[derive(Serialize, Deserialize)]
 struct Header {
     version: String,
+    /// The [`program`] that wrote it.
+    #[serde(default)]
+    program: String,
     problem: Value,
     iteration: u64,
     coordinates: u64,
@@ -62,6 +66,7 @@ pub fn save(path: &Path, problem: &Problem, optimization: &dyn Optimization) -> 
     let coordinates = optimization.coordinates();
     let header = Header {
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        program: program().to_owned(),
         problem: problem.description.clone(),
         iteration: optimization.iteration(),
         coordinates: coordinates.len() as u64,
@@ -81,8 +86,8 @@ pub fn save(path: &Path, problem: &Problem, optimization: &dyn Optimization) -> 
 /// none.
 ///
 /// # Errors
-/// The file cannot be read, is no checkpoint, is truncated or damaged, or belongs to another problem or version: the
-/// sentence says which, and what differs.
+/// The file cannot be read, is no checkpoint, is truncated or damaged, or belongs to another problem, version or
+/// build: the sentence says which, and what differs.
 pub fn resume(path: &Path, problem: &Problem, optimization: &mut dyn Optimization) -> Result<bool> {
     let refuse = |why: String| {
         Error::Input(format!(
@@ -110,23 +115,41 @@ pub fn resume(path: &Path, problem: &Problem, optimization: &mut dyn Optimizatio
             differences(&header.problem, &problem.description)
         )));
     }
+    if header.program != program() {
+        return Err(refuse("another build of this version wrote it, which may compute other bits".to_owned()));
+    }
     match coordinates {
         Some(coordinates) if optimization.restore(header.iteration, &coordinates) => Ok(true),
         _ => Err(refuse("its state is not one of this problem's".to_owned())),
     }
 }
 
-/// Removes a checkpoint of this problem, or what a link of its name leads to. Another problem's file stays.
+/// Removes a checkpoint of this problem and program, or what a link of its name leads to. Another's file stays.
 pub fn remove(path: &Path, problem: &Problem) {
     let header = || {
         let file = File::open(path).ok()?;
         let length = file.metadata().ok()?.len();
         Some(decode(file, length, 0).ok()?.0)
     };
-    let same = |header: Header| header.version == env!("CARGO_PKG_VERSION") && header.problem == problem.description;
+    let same = |header: Header| {
+        header.version == env!("CARGO_PKG_VERSION")
+            && header.program == program()
+            && header.problem == problem.description
+    };
     if header().is_some_and(same) {
         fs::canonicalize(path).and_then(fs::remove_file).ok();
     }
+}
+
+/// The SHA-256 of the running program's file: two builds of a version may differ in their arithmetic. Empty where the
+/// file cannot be read: then the version alone counts.
+fn program() -> &'static str {
+    static PROGRAM: OnceLock<String> = OnceLock::new();
+    PROGRAM.get_or_init(|| {
+        // On Linux the one that runs, even if another has its name by now.
+        let file = fs::read("/proc/self/exe").or_else(|_| std::env::current_exe().and_then(fs::read));
+        file.map_or_else(|_| String::new(), |bytes| digest(&bytes))
+    })
 }
 
 /// The header of a file of `length` bytes, and its coordinates, unless there are not `wanted` of them: no more is read

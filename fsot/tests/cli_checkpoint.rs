@@ -130,6 +130,41 @@ fn a_foreign_checkpoint_is_refused_with_what_differs() {
     assert!(error.contains("state"), "{error}");
 }
 
+/// What other arithmetic began would end as bits that no program makes in one run.
+#[test]
+fn a_checkpoint_of_another_build_is_refused_and_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.checkpoint");
+    save(&path, &problem(7), &Walk::new()).unwrap();
+    let whole = fs::read(&path).unwrap();
+    let (key, mut bytes) = (b"\"program\":\"", whole[..whole.len() - 32].to_vec());
+    let at = bytes.windows(key.len()).position(|part| part == key).unwrap() + key.len();
+    bytes[at] = if bytes[at] == b'0' { b'1' } else { b'0' };
+    let checksum = fsot::checkpoint::digest(&bytes);
+    bytes.extend((0..32).map(|byte| u8::from_str_radix(&checksum[2 * byte..2 * byte + 2], 16).unwrap()));
+    fs::write(&path, &bytes).unwrap();
+    let error = resume(&path, &problem(7), &mut Walk::new()).unwrap_err().to_string();
+    assert!(error.contains("another build") && error.contains("Remove it"), "{error}");
+    remove(&path, &problem(7));
+    assert!(path.exists());
+    fs::write(&path, &whole).unwrap();
+    assert!(resume(&path, &problem(7), &mut Walk::new()).unwrap());
+}
+
+/// Single precision has many digits in double, which most readers of JSON miss by one.
+#[test]
+fn fractions_are_what_they_were() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.checkpoint");
+    for hundredth in 1..100_u16 {
+        let problem = Problem::new(&json!({"axis-priority": f32::from(hundredth) / 100.0})).unwrap();
+        save(&path, &problem, &Walk::new()).unwrap();
+        assert!(resume(&path, &problem, &mut Walk::new()).unwrap(), "{hundredth}");
+        remove(&path, &problem);
+        assert!(!path.exists(), "{hundredth}");
+    }
+}
+
 #[test]
 fn only_a_checkpoint_of_the_problem_is_removed() {
     let folder = tempfile::tempdir().unwrap();

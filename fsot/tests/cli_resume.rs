@@ -3,7 +3,7 @@
 #![cfg(unix)]
 
 use crate::cli_support::{Place, error};
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::process::Command;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -73,12 +73,38 @@ fn interrupted_run_equals_whole(command: &str) {
 
 #[test]
 fn points() {
-    interrupted_run_equals_whole("points -n 600 --classes 2color --iterations 6000 --out out");
+    interrupted_run_equals_whole("points -n 600 --classes 2color --axis-priority .23 --iterations 6000 --out out");
 }
 
 #[test]
 fn tile() {
     interrupted_run_equals_whole("tile --size 16 --spp 2 --iterations 3000 --integrands 1 --out out");
+}
+
+/// Its last step is the longest part of a run of few: Ctrl-C there is one like any other.
+#[test]
+fn in_the_last_step() {
+    let place = Place::new();
+    let command = "points -n 400000 -d 4 --iterations 2 --checkpoint-every 0 --out out";
+    place.succeed(&format!("{command} --quiet"));
+    let expected = place.read("out");
+    std::fs::remove_file(place.path("out")).unwrap();
+
+    let (code, message) = interrupt(&place, command, "out.checkpoint", "KILL");
+    assert_eq!(code, None, "{message}");
+    let mut child = place.start(command);
+    let (mut line, mut said) = (String::new(), BufReader::new(child.stderr.take().unwrap()));
+    said.read_line(&mut line).unwrap();
+    assert!(line.ends_with("at step 1\n"), "{line}");
+    signal("INT", child.id());
+    said.read_to_string(&mut line).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{line}");
+    assert!(line.contains("stopped at step 2 of 2"), "{line}");
+    assert_eq!(place.names(), ["out.checkpoint"]);
+
+    place.succeed(&format!("{command} --quiet"));
+    assert!(place.read("out") == expected);
+    assert_eq!(place.names(), ["out"]);
 }
 
 #[test]

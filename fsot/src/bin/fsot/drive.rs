@@ -81,15 +81,12 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
     let mut last = Instant::now();
     let (mut saved, mut can_save) = (resumed, true);
     loop {
-        let finished = optimization.iteration() >= optimization.iterations();
-        if progress.unheard.is_some() || (watch.stopped() && !finished) {
+        // After the last step, too: what follows may take long, and the same command begins there.
+        if progress.unheard.is_some() || watch.stopped() {
             progress.clear();
-            if let Err(error) = checkpoint::save(&checkpoint, &problem, optimization) {
-                return Err(Error::Input(format!("stopped, and the state could not be saved: {error}")));
-            }
-            return Err(progress.unheard.unwrap_or_else(|| Error::Stopped(stopped(&*optimization, &checkpoint))));
+            return Err(leave(optimization, &checkpoint, &problem, progress.unheard));
         }
-        if finished {
+        if optimization.iteration() >= optimization.iterations() {
             break;
         }
         let energy = optimization.step();
@@ -111,6 +108,9 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
         // A full disk is about to be reported by whoever writes the output.
         saved |= checkpoint::save(&checkpoint, &problem, optimization).is_ok();
     }
+    if watch.stopped() {
+        return Err(leave(optimization, &checkpoint, &problem, None));
+    }
     Ok(Run {
         iterations: optimization.iterations(),
         resumed_at: progress.first,
@@ -123,22 +123,31 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
 }
 
 /// Puts a command's outputs in place, then removes its run's checkpoint.
+///
+/// # Errors
+/// As [`Outputs::commit`]; [`Error::Stopped`] if Ctrl-C came meanwhile, with the outputs in place.
 pub(crate) fn finish(outputs: Outputs, run: &Run) -> Result<()> {
-    let _watch = Watch::start()?;
+    let watch = Watch::start()?;
     outputs.commit()?;
     // Meanwhile another run may have saved its state under the same name.
     if run.saved {
         checkpoint::remove(&run.checkpoint, &run.problem);
     }
-    Ok(())
+    if watch.stopped() { Err(Error::Stopped("stopped; the outputs are in place".to_owned())) } else { Ok(()) }
 }
 
-fn stopped(optimization: &dyn Optimization, path: &Path) -> String {
+/// Saves the state of a run that ends here, and says so, unless there is another reason.
+fn leave(optimization: &dyn Optimization, path: &Path, problem: &Problem, why: Option<Error>) -> Error {
+    if let Err(error) = checkpoint::save(path, problem, optimization) {
+        return Error::Input(format!("stopped, and the state could not be saved: {error}"));
+    }
     let [done, all] = [optimization.iteration(), optimization.iterations()];
-    format!(
-        "stopped at step {done} of {all}; the state is saved in {}. Run the same command again to continue",
-        path.display()
-    )
+    why.unwrap_or_else(|| {
+        Error::Stopped(format!(
+            "stopped at step {done} of {all}; the state is saved in {}. Run the same command again to continue",
+            path.display()
+        ))
+    })
 }
 
 struct Progress {

@@ -13,7 +13,8 @@ static WATCHES: AtomicU32 = AtomicU32::new(0);
 static STOPPED: AtomicBool = AtomicBool::new(false);
 static HANDLER: Once = Once::new();
 
-/// While one exists, the first Ctrl-C only sets [`stopped`](Watch::stopped); a second one ends the program.
+/// While one exists, the first Ctrl-C only sets [`stopped`](Watch::stopped); a second one ends the program. Whoever has
+/// one looks before it is gone: the next counts anew.
 pub(crate) struct Watch(());
 
 impl Watch {
@@ -27,6 +28,9 @@ impl Watch {
             });
         });
         result.map_err(|error| Error::Input(format!("cannot watch for Ctrl-C: {error}")))?;
+        if WATCHES.load(Ordering::SeqCst) == 0 {
+            STOPPED.store(false, Ordering::SeqCst);
+        }
         WATCHES.fetch_add(1, Ordering::SeqCst);
         Ok(Watch(()))
     }
