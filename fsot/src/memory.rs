@@ -25,6 +25,22 @@ pub(crate) fn check(bytes: u64) -> Result<()> {
     )))
 }
 
+/// How many of `wanted` workers, each of which needs `each` bytes beside the `base` of all, there is memory for.
+///
+/// # Errors
+/// As [`check`], if there is not enough for one.
+pub(crate) fn workers(base: u64, each: u64, wanted: usize) -> Result<usize> {
+    let needed = |workers: usize| base.saturating_add(each.saturating_mul(workers as u64));
+    let fewer = (2..=allowed(base, each, wanted)).rev().find(|workers| check(needed(*workers)).is_ok());
+    fewer.map_or_else(|| check(needed(1)).map(|()| 1), Ok)
+}
+
+/// How many of them [`MOST`] allows, at least one.
+fn allowed(base: u64, each: u64, wanted: usize) -> usize {
+    let most = MOST.saturating_sub(base) / each.max(1);
+    usize::try_from(most).unwrap_or(usize::MAX).min(wanted).max(1)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -35,5 +51,15 @@ mod tests {
         for bytes in [MOST + 1, u64::MAX] {
             assert!(check(bytes).unwrap_err().to_string().contains(&bytes.to_string()));
         }
+    }
+
+    #[test]
+    fn fewer_work_where_there_is_no_memory_for_all() {
+        let quarter = MOST / 4;
+        assert_eq!([1, 2, 3, 64].map(|wanted| allowed(quarter, quarter, wanted)), [1, 2, 3, 3]);
+        assert_eq!(allowed(MOST, quarter, 64), 1);
+        assert_eq!(workers(1 << 10, 1 << 10, 64).unwrap(), 64);
+        assert!(workers(MOST, quarter, 64).unwrap_err().to_string().contains(&(MOST + quarter).to_string()));
+        assert!(workers(u64::MAX, u64::MAX, 0).is_err());
     }
 }

@@ -111,6 +111,36 @@ fn class_files_that_are_none() {
 }
 
 #[test]
+fn classes_without_points_and_points_without_a_class() {
+    let place = Place::new();
+    let class = |name: &str, from: f32, to: f32, weight: f32| {
+        let function = format!("{{ box = {{ from = {from:?}, to = {to:?} }} }}");
+        format!("[[class]]\nname = \"{name}\"\nweight = {weight:?}\nfunction = {function}\n")
+    };
+    let all = |weight| class("all", 0.0, 1.0, weight);
+    let halves = |end, weight| class("a", 0.0, end, weight) + &class("b", 0.5, 1.0, 1.0);
+    let narrow = class("narrow", 0.01, 0.02, 1.0);
+    for (classes, message) in [
+        (halves(0.25, 1.0), "c.toml: no class of a weight above 0 has 4 points of 16, from index 0.2812 on"),
+        (halves(0.5, 0.0), "has 8 points of 16, from index 0.0312 on"),
+        (halves(0.25, 1.0) + &all(0.0), "4 points of 16"),
+        (narrow.clone(), "class \"narrow\" has none of 16 points"),
+        (all(1.0) + &narrow, "class \"narrow\" has none of 16 points"),
+    ] {
+        place.write("c.toml", classes);
+        place.refuse("points -n 16 --classes c.toml --out p.txt", message);
+    }
+    for (classes, count) in
+        [(halves(0.5, 1.0), 16), (halves(0.25, 1.0) + &all(1.0), 16), (all(1.0) + &narrow, 100), (all(1.0), 16)]
+    {
+        place.write("c.toml", classes);
+        place.succeed(&format!("points -n {count} --classes c.toml --iterations 2 --out p.txt"));
+    }
+    // Colours that a few points do not have.
+    place.succeed("points -n 1 --classes 3color --iterations 2 --out p.txt");
+}
+
+#[test]
 fn outputs_that_cannot_be() {
     let place = Place::new();
     place.write("locked.txt", "mine");

@@ -169,3 +169,20 @@ fn points_are_in_place_before_their_report() {
     let output = child.wait_with_output().unwrap();
     assert!(output.stdout.is_empty(), "{}", String::from_utf8_lossy(&output.stdout));
 }
+
+/// Of a large drawing, how alike the picture is takes the more of both.
+#[test]
+fn drawings_are_in_place_before_their_report() {
+    let place = Place::new();
+    image::GrayImage::from_fn(9, 9, |x, _| image::Luma([20 * x as u8])).save(place.path("in.png")).unwrap();
+    for (input, out) in [("in.png -n 50", "s.png"), ("--frames in.png --window 50 --step 5", "f.png")] {
+        let mut child = place.start(&format!("stipple {input} --iterations 1 --size 6000 --threads 1 --out {out}"));
+        while !place.path(out).exists() {
+            assert!(child.try_wait().unwrap().is_none());
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        child.kill().unwrap();
+        let output = child.wait_with_output().unwrap();
+        assert!(output.stdout.is_empty(), "{}", String::from_utf8_lossy(&output.stdout));
+    }
+}

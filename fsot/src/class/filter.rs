@@ -4,32 +4,47 @@ use super::function::ClassFunction;
 use super::weighted::ClassCoordinates;
 use std::ops::Range;
 
+/// Neighbours of equal value above 0.
+type Run = (Range<u32>, f32);
+
+/// The memory of a run.
+pub(crate) const RUN: usize = size_of::<Run>();
+
+/// The runs of a class function, ascending.
+fn runs(function: &ClassFunction, coordinates: &ClassCoordinates, points: usize) -> impl Iterator<Item = Run> {
+    let value = move |i: usize| (i as u32, coordinates.value(function, i, points));
+    let mut values = (0..points).map(value).peekable();
+    std::iter::from_fn(move || {
+        let (start, value) = values.find(|(_, value)| *value > 0.0)?;
+        let mut end = start + 1;
+        while values.next_if(|(_, next)| *next == value).is_some() {
+            end += 1;
+        }
+        Some((start..end, value))
+    })
+}
+
 /// A class function at all points of a set: neighbours of equal value are one run, so a box costs one entry and a ramp
 /// one per point.
 #[derive(Clone, Debug)]
 pub(crate) struct Filter {
-    runs: Vec<(Range<u32>, f32)>,
+    runs: Vec<Run>,
     highest: f32,
     members: usize,
 }
 
 impl Filter {
     pub(crate) fn new(function: &ClassFunction, coordinates: &ClassCoordinates, points: usize) -> Filter {
-        let mut runs: Vec<(Range<u32>, f32)> = Vec::new();
-        let (mut highest, mut members) = (0.0f32, 0);
-        for i in 0..points {
-            let value = coordinates.value(function, i, points);
-            if value <= 0.0 {
-                continue;
-            }
-            highest = highest.max(value);
-            members += 1;
-            match runs.last_mut() {
-                Some((run, last)) if *last == value && run.end == i as u32 => run.end += 1,
-                _ => runs.push((i as u32..i as u32 + 1, value)),
-            }
-        }
+        let mut runs: Vec<Run> = runs(function, coordinates, points).collect();
+        runs.shrink_to_fit();
+        let highest = runs.iter().map(|(_, value)| *value).fold(0.0, f32::max);
+        let members = runs.iter().map(|(run, _)| run.len()).sum();
         Filter { runs, highest, members }
+    }
+
+    /// How many runs the filter of a class function has, each of [`RUN`] bytes.
+    pub(crate) fn count(function: &ClassFunction, coordinates: &ClassCoordinates, points: usize) -> usize {
+        runs(function, coordinates, points).count()
     }
 
     /// The largest value at a point: thresholds at or above it select nothing. 0 if the class is empty.
@@ -160,6 +175,8 @@ mod tests {
             prop_assert_eq!(places(&selected), above(z));
             prop_assert!(selected.windows(2).all(|pair| pair[0].end < pair[1].start));
             prop_assert_eq!(filter.members(), above(0.0).len());
+            prop_assert_eq!(Filter::count(&function, &coordinates, points), filter.runs.len());
+            prop_assert!(filter.runs.windows(2).all(|pair| pair[0].0.end < pair[1].0.start || pair[0].1 != pair[1].1));
             // Larger thresholds select subsets, and none is left at the highest value.
             let mut fewer = Vec::new();
             filter.select((z + 0.1).min(filter.highest()), &mut fewer);

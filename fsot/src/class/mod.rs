@@ -11,6 +11,6 @@ pub use function::{ClassFunction, Step};
 pub use presets::{progressive, progressive_prefixes, ramp, single, three_colors, two_colors};
 pub use weighted::{Class, ClassCoordinates};
 
-pub(crate) use filter::Filter;
+pub(crate) use filter::{Filter, RUN};
 pub(crate) use function::MIN_SIGMA;
 pub(crate) use weighted::{check_weight, middle, normalised};

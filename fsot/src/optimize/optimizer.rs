@@ -4,9 +4,9 @@ use super::check;
 use super::direction::direction;
 use super::group::{self, Group};
 use super::problem::{Domain, Problem};
-use super::schedule::{MOST_OBJECTIVES, SLICES, Schedule, objectives, window_count};
+use super::schedule::{MOST_OBJECTIVES, SLICES, Schedule, is_windowed, objectives, window_count};
 use super::slice::{Bins, Offset, Slice, Workspace, advance, transport};
-use crate::class::{Filter, normalised};
+use crate::class::{Class, Filter, RUN, normalised};
 use crate::error::Result;
 use crate::memory;
 use crate::points::{BELOW_ONE, Points};
@@ -20,7 +20,8 @@ use std::sync::Mutex;
 ///
 /// One step draws a few slices, each a class, a threshold and a direction, finds where one-dimensional optimal
 /// transport moves each slice's points, and moves every point by the mean of what its slices want. Memory: about 200
-/// bytes per point, and 32 for each thread up to 16.
+/// bytes per point, and 32 for each thread up to 16, or as many threads as there is memory for; and what class
+/// functions of many values need.
 pub struct Optimizer {
     pub(super) problem: Problem,
     pub(super) filters: Vec<Filter>,
@@ -33,13 +34,29 @@ pub struct Optimizer {
     pub(super) coordinates: Vec<f32>,
     offsets: Vec<Vec<Offset>>,
     workspaces: Mutex<Vec<Workspace>>,
+    /// How many slices there is memory to work on at once.
+    workers: usize,
 }
 
-/// The memory of an optimisation: coordinates, the offsets of all slices, and a workspace for each thread.
-fn bytes(problem: &Problem) -> u64 {
-    let threads = rayon::current_num_threads().min(SLICES);
-    let per_point = 4 * problem.dims + SLICES * size_of::<Offset>() + 32 * threads;
-    problem.points as u64 * per_point as u64
+/// How many threads there is memory for, each of which needs a workspace, beside coordinates, the offsets of all slices
+/// and classes.
+fn workers(problem: &Problem) -> Result<usize> {
+    let points = problem.points as u64;
+    let (shared, each) = (points * (4 * problem.dims + SLICES * size_of::<Offset>()) as u64, 32 * points);
+    // Before the class functions are looked at.
+    memory::check(shared + each)?;
+    let count = |class: &Class| Filter::count(&class.function, &problem.class_coordinates, problem.points);
+    let runs = problem.classes.iter().map(|class| count(class) as u64).sum();
+    let classes = class_bytes(runs, problem.classes.len() as u64, points, is_windowed(problem));
+    memory::workers(shared.saturating_add(classes), each, rayon::current_num_threads().min(SLICES))
+}
+
+/// The memory of classes that have so many runs together: their filters, and what [`group::groups`] makes of them.
+fn class_bytes(runs: u64, classes: u64, points: u64, windowed: bool) -> u64 {
+    let ends = 2 * runs + 2;
+    let kinds = ends.min(points + 1);
+    let groups = 4 * ends + kinds * (4 * classes + 8) + 8 * points;
+    RUN as u64 * runs + if windowed { groups } else { 0 }
 }
 
 impl Optimizer {
@@ -51,7 +68,7 @@ impl Optimizer {
     /// uniform, and more memory than [`memory::MOST`] or than the system gives.
     pub fn new(problem: Problem) -> Result<Optimizer> {
         check::check(&problem)?;
-        memory::check(bytes(&problem))?;
+        let workers = workers(&problem)?;
         let points = problem.points;
         let filters: Vec<Filter> = problem
             .classes
@@ -66,7 +83,18 @@ impl Optimizer {
         let coordinates = super::initial::coordinates(&problem);
         let offsets = vec![Vec::new(); SLICES];
         let workspaces = Mutex::default();
-        Ok(Optimizer { problem, filters, weights, groups, schedule, iteration: 0, coordinates, offsets, workspaces })
+        Ok(Optimizer {
+            problem,
+            filters,
+            weights,
+            groups,
+            schedule,
+            iteration: 0,
+            coordinates,
+            offsets,
+            workspaces,
+            workers,
+        })
     }
 
     /// The points as they are now.
@@ -105,7 +133,8 @@ impl Optimizer {
         let slices: Vec<(Slice<D>, f64)> = if alone {
             offsets.iter_mut().enumerate().map(one).collect()
         } else {
-            offsets.par_iter_mut().enumerate().map(one).collect()
+            let least = if self.workers < rayon::current_num_threads() { SLICES.div_ceil(self.workers) } else { 1 };
+            offsets.par_iter_mut().enumerate().with_min_len(least).map(one).collect()
         };
         let energy = slices.iter().map(|(_, energy)| energy).sum::<f64>() / SLICES as f64;
 
@@ -210,5 +239,52 @@ impl Optimization for Optimizer {
             self.coordinates.copy_from_slice(coordinates);
         }
         valid
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::class::ramp;
+
+    /// Ten million points in 500 classes, each of which tells all points apart.
+    #[test]
+    fn classes_count() {
+        let (runs, classes, points) = (5_000_000_000, 500, 10_000_000);
+        assert!(class_bytes(runs, classes, points, false) >= 60_000_000_000);
+        assert!(class_bytes(runs, classes, points, true) >= 80_000_000_000);
+        assert!(class_bytes(1, 1, points, false) < 100 && class_bytes(1, 1, 1 << 28, true) < 1 << 32);
+        let problem = Problem { classes: ramp(2), ..Problem::new(1000, 2) };
+        let filters =
+            problem.classes.iter().map(|class| Filter::new(&class.function, &problem.class_coordinates, 1000));
+        let held: usize = filters.map(|filter| RUN * filter.ends().count() / 2).sum();
+        assert_eq!(class_bytes(2000, 2, 1000, false), held as u64);
+    }
+
+    /// Whoever has more cores may not be refused what others make.
+    #[test]
+    fn threads_are_only_as_many_as_there_is_memory_for() {
+        let of = |threads: usize, points| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| workers(&Problem::new(points, 2)))
+        };
+        assert_eq!([1, 3, 40].map(|threads| of(threads, 1000).unwrap()), [1, 3, 16]);
+        let [one, many] = [1, 40].map(|threads| of(threads, 200_000_000).unwrap_err().to_string());
+        assert_eq!(one, many);
+    }
+
+    #[test]
+    fn fewer_threads_than_there_are_make_the_same() {
+        let of = |workers: Option<usize>| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(7).build().unwrap();
+            let mut optimizer = Optimizer::new(Problem { classes: ramp(2), seed: 3, ..Problem::new(700, 2) }).unwrap();
+            optimizer.workers = workers.unwrap_or(optimizer.workers);
+            let energies: Vec<u64> = (0..5).map(|_| pool.install(|| optimizer.step().to_bits())).collect();
+            let made = optimizer.workspaces.lock().unwrap().len();
+            assert!(workers.is_none_or(|workers| made <= workers), "{made}");
+            (energies, optimizer.coordinates)
+        };
+        let all = of(None);
+        assert!([1, 2, 3, 5, 16].iter().all(|workers| of(Some(*workers)) == all));
     }
 }

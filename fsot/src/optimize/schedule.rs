@@ -33,6 +33,14 @@ pub(super) fn window_count(points: usize, dims: usize) -> usize {
     windows_per_axis(points, dims).max(2).pow(dims as u32)
 }
 
+/// Whether a set is one that windows are for.
+pub(super) fn is_windowed(problem: &Problem) -> bool {
+    problem.points > WINDOWED_FROM
+        && windows_per_axis(problem.points, problem.dims) >= 2
+        && problem.dims <= 3
+        && problem.classes.iter().all(|class| class.target.is_uniform())
+}
+
 /// The iterations of an optimisation: of all points together, or, for large uniform sets, of windows, but for a few at
 /// the beginning, which spread the points evenly over the domain, and some at the end, which remove the errors that are
 /// larger than a window.
@@ -47,10 +55,7 @@ pub(crate) struct Schedule {
 impl Schedule {
     /// `objectives` is the number of subclasses that compete, see [`objectives`].
     pub(crate) fn new(problem: &Problem, objectives: usize) -> Schedule {
-        let windowed = problem.points > WINDOWED_FROM
-            && windows_per_axis(problem.points, problem.dims) >= 2
-            && problem.dims <= 3
-            && problem.classes.iter().all(|class| class.target.is_uniform());
+        let windowed = is_windowed(problem);
         let iterations = iterations(problem, objectives, windowed);
         let (opening, closing) = if windowed {
             let last = (CLOSING * objectives as u64).min(iterations / 4);

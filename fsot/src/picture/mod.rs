@@ -12,7 +12,7 @@ pub use colour::{decode, encode, luminance};
 pub use drawing::{BLACK, Blend, Colour, Drawing, Mark, Shape, WHITE};
 pub use photo::Photo;
 pub(crate) use photo::is_linear;
-pub use raster::{png, rasterise};
+pub use raster::{check_size, png, rasterise};
 pub(crate) use resample::resample;
 pub use score::blurred_psnr;
 pub use vector::{hex, svg};

@@ -3,6 +3,7 @@
 use super::colour::{decode, encode};
 use super::drawing::{Blend, Drawing, Shape};
 use crate::error::{Error, Result};
+use crate::memory;
 use image::{ExtendedColorType, ImageEncoder, RgbImage};
 use rayon::prelude::*;
 
@@ -12,21 +13,35 @@ const LINES: usize = 16;
 const BAND: usize = 32;
 /// The most pixels of a picture.
 const MAX_PIXELS: f64 = 4e8;
+/// The memory of a pixel: drawn, in a file, expected in double precision, its difference, and two of that blurred.
+const PIXEL: u64 = 3 + 3 + 8 + 3 * 4;
 
-/// Draws with anti-aliased edges, at `scale` pixels per unit.
+/// The pixels of a drawing of this size at `scale` pixels per unit, if there is memory to draw them and to say
+/// [how alike](super::blurred_psnr) the drawing and its source are.
 ///
 /// # Errors
 ///
-/// [`Error::Input`] if the picture would have no pixels or more than 400 million.
-pub fn rasterise(drawing: &Drawing, scale: f32) -> Result<RgbImage> {
-    let [width, height] = drawing.size.map(|side| (f64::from(side) * f64::from(scale)).round().max(1.0));
+/// [`Error::Input`] if the picture would have no pixels or more than 400 million, or need more memory than
+/// [`memory::MOST`] or than the system gives.
+pub fn check_size(size: [f32; 2], scale: f32) -> Result<(usize, usize)> {
+    let [width, height] = size.map(|side| (f64::from(side) * f64::from(scale)).round().max(1.0));
     let drawable = width * height <= MAX_PIXELS && scale > 0.0;
     if !drawable {
         return Err(Error::Input(format!(
             "a picture of {width} x {height} pixels cannot be drawn: choose a size of at most 400 million pixels"
         )));
     }
-    let (width, height) = (width as usize, height as usize);
+    memory::check((width * height) as u64 * PIXEL)?;
+    Ok((width as usize, height as usize))
+}
+
+/// Draws with anti-aliased edges, at `scale` pixels per unit.
+///
+/// # Errors
+///
+/// As [`check_size`].
+pub fn rasterise(drawing: &Drawing, scale: f32) -> Result<RgbImage> {
+    let (width, height) = check_size(drawing.size, scale)?;
     let value = |colour: u8| if drawing.linear { decode(f32::from(colour) / 255.0) } else { f32::from(colour) / 255.0 };
     let bands = reaching(drawing, scale, height.div_ceil(BAND));
     let mut bytes = vec![0_u8; width * height * 3];

@@ -13,6 +13,7 @@ use crate::points::BELOW_ONE;
 use crate::random::stream;
 use crate::run::Optimization;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// Rows of pixels that one task works on.
@@ -28,7 +29,8 @@ const STEP_STREAM: u64 = u64::MAX - 1;
 /// Optimises a tile.
 ///
 /// All sums over slices are sums of integers, so the result does not depend on the number of threads. Memory: the
-/// samples, their projections on a step's directions and, for each thread, their displacements.
+/// samples, their projections on a step's directions and, for each thread, or as many as there is memory for, their
+/// displacements.
 pub struct TileOptimizer {
     problem: TileProblem,
     stencils: Stencils,
@@ -38,8 +40,10 @@ pub struct TileOptimizer {
     positions: Vec<u32>,
     /// The bins of each direction: `[direction][bin of all lengths]`.
     bins: Vec<Bin>,
-    /// The displacements found by each thread.
+    /// The displacements found by each worker.
     sums: Mutex<Vec<Vec<i64>>>,
+    /// How many work at once, at most.
+    workers: usize,
 }
 
 /// What the sample of a rank is moved to.
@@ -51,12 +55,12 @@ struct Bin {
     weight: i32,
 }
 
-/// The memory of an optimisation: the coordinates, the positions of all samples with their margins, and each thread's
-/// displacements.
-fn bytes(problem: &TileProblem, samples: usize) -> u64 {
+/// How many threads there is memory for, each of which needs displacements, beside the coordinates and the positions of
+/// all samples with their margins.
+fn workers(problem: &TileProblem, samples: usize) -> Result<usize> {
     let (directions, samples) = (problem.directions as u64, samples as u64);
-    let sums = 8 * (directions + 1) * samples * rayon::current_num_threads() as u64;
-    4 * problem.coordinates() as u64 + 4 * directions * samples + sums
+    let shared = 4 * problem.coordinates() as u64 + 4 * directions * samples;
+    memory::workers(shared, 8 * (directions + 1) * samples, rayon::current_num_threads())
 }
 
 impl TileOptimizer {
@@ -64,7 +68,7 @@ impl TileOptimizer {
     /// memory than [`memory::MOST`] or than the system gives.
     pub fn new(problem: TileProblem) -> Result<TileOptimizer> {
         let stencils = problem.stencils()?;
-        memory::check(bytes(&problem, stencils.lattice.samples()))?;
+        let workers = workers(&problem, stencils.lattice.samples())?;
         let mut rng = stream(problem.seed, 0, START_STREAM);
         let coordinates = (0..problem.coordinates()).map(|_| rng.uniform_f32()).collect();
         let positions = vec![0; problem.directions * stencils.lattice.samples()];
@@ -77,6 +81,7 @@ impl TileOptimizer {
             positions,
             bins,
             sums: Mutex::new(Vec::new()),
+            workers,
         })
     }
 
@@ -260,19 +265,22 @@ impl Optimization for TileOptimizer {
         for sums in lock().iter_mut() {
             sums.fill(0);
         }
-        let task = |task: usize| {
-            let taken = lock().pop();
-            let mut sums = taken.unwrap_or_else(|| vec![0; lattice.samples() * stride]);
-            let energy = self.slices(task * ROWS..all_rows.min((task + 1) * ROWS), &mut sums);
-            lock().push(sums);
-            energy
-        };
         let add = |mut a: Vec<u64>, b: Vec<u64>| {
             a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
             a
         };
         let none = || vec![0; self.problem.directions];
-        let energy = (0..all_rows.div_ceil(ROWS)).into_par_iter().map(task).reduce(none, add);
+        let (tasks, next) = (all_rows.div_ceil(ROWS), AtomicUsize::new(0));
+        let work = |_| {
+            let taken = lock().pop();
+            let mut sums = taken.unwrap_or_else(|| vec![0; lattice.samples() * stride]);
+            let mine = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed)).take_while(|task| *task < tasks);
+            let energy =
+                mine.map(|task| self.slices(task * ROWS..all_rows.min((task + 1) * ROWS), &mut sums)).fold(none(), add);
+            lock().push(sums);
+            energy
+        };
+        let energy = (0..self.workers.min(tasks)).into_par_iter().map(work).reduce(none, add);
         let sums = std::mem::take(&mut *lock());
         self.apply(&projections, &sums);
         self.sums = Mutex::new(sums);
@@ -332,5 +340,38 @@ impl Lattice {
             total[column * length..].iter_mut().zip(from).for_each(|(total, sum)| *total += sum);
             x += run;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fewer_threads_than_there_are_make_the_same() {
+        let of = |workers: Option<usize>| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(7).build().unwrap();
+            let mut optimizer = pool.install(|| TileOptimizer::new(TileProblem::new(32, 2, 2)).unwrap());
+            assert_eq!(optimizer.workers, 7);
+            optimizer.workers = workers.unwrap_or(optimizer.workers);
+            let energies: Vec<u64> = (0..4).map(|_| pool.install(|| optimizer.step().to_bits())).collect();
+            let made = optimizer.sums.lock().unwrap().len();
+            assert!(made <= optimizer.workers, "{made}");
+            (energies, optimizer.coordinates)
+        };
+        let all = of(None);
+        assert!([1, 2, 5, 64].iter().all(|workers| of(Some(*workers)) == all));
+    }
+
+    /// Whoever has more cores may not be refused what others make.
+    #[test]
+    fn threads_are_only_as_many_as_there_is_memory_for() {
+        let of = |threads: usize, samples| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| workers(&TileProblem::new(64, 1, 2), samples))
+        };
+        assert_eq!([1, 3, 40].map(|threads| of(threads, 1 << 12).unwrap()), [1, 3, 40]);
+        let [one, many] = [1, 40].map(|threads| of(threads, 1 << 30).unwrap_err().to_string());
+        assert_eq!(one, many);
     }
 }

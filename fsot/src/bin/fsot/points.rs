@@ -5,6 +5,7 @@ mod report;
 
 use crate::common::Common;
 use crate::drive::{drive, finish};
+use crate::measure::in_file;
 use crate::names;
 use crate::pictures::Pictures;
 use classes::Classes;
@@ -22,6 +23,8 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// The classes that need no file. A colour of theirs may have none of a few points.
+const PRESETS: [&str; 3] = ["2color", "3color", "ramp"];
 /// Pixels along the longer side of a picture.
 const PICTURE: f32 = 1024.0;
 /// Pictures whose sides differ by no more than this part have the same shape: their sides are whole pixels.
@@ -87,6 +90,9 @@ fn make(args: &Args) -> Result<()> {
     let (problem, description, extent) = problem(args)?;
     let mut optimizer = Optimizer::new(problem)?;
     let classes = Classes::of(optimizer.problem());
+    if let Some(file) = args.classes.as_deref().filter(|name| !PRESETS.contains(name)) {
+        classes.check().map_err(in_file(Path::new(file)))?;
+    }
     let run = drive(&mut optimizer, &description, &args.common)?;
 
     let table = Table { points: optimizer.points(), classes: classes.labels() };

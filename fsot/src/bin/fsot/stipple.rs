@@ -13,7 +13,7 @@ use fsot::error::{Error, Result};
 use fsot::export::points::Table;
 use fsot::optimize::Optimizer;
 use fsot::output::Outputs;
-use fsot::picture::{Photo, blurred_psnr, rasterise};
+use fsot::picture::{Photo, blurred_psnr, check_size, rasterise};
 use fsot::read;
 use fsot::stipple::Stipple;
 use serde_json::json;
@@ -38,20 +38,26 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
     let photo = Photo::new(&read::decode_image(&bytes, image)?).map_err(named)?;
     let options = args.options(args.n.unwrap_or(0) as usize);
     let stipple = Stipple::new(&photo, &options).map_err(named)?;
+    let size = args.size(stipple.spacing());
+    check_size(photo.extent(), size as f32)?;
     let mut optimizer = Optimizer::new(stipple.problem.clone())?;
     let run = drive(&mut optimizer, &args.description(&[digest(&bytes)], &options), &args.common)?;
 
     let points = optimizer.points();
+    drop(optimizer);
     let drawing = stipple.drawing(&points);
-    let size = args.size(stipple.spacing());
     let drawn = rasterise(&drawing, size as f32)?;
-    let sigma = stipple.spacing() * size as f32;
-    let psnr = blurred_psnr(&drawn, &photo, sigma, args.linear(), !args.cmyk);
-
     let mut outputs = Outputs::new();
     outputs.add(&args.common.out, &format.encode(&drawing, &drawn, size)?)?;
     let table = Table { points, classes: Some(stipple.labels()) };
     args.copies.add(&mut outputs, &drawing, size, &table)?;
+    finish(outputs, &run)?;
+    if args.common.quiet {
+        return Ok(());
+    }
+
+    let sigma = stipple.spacing() * size as f32;
+    let psnr = blurred_psnr(&drawn, &photo, sigma, args.linear(), !args.cmyk);
     let counts: Vec<String> = stipple.inks.iter().map(|dots| format!("{} {}", dots.range.len(), dots.name)).collect();
     let mut text = format!(
         "{} ({}), radius {:.2} px, drawn {} x {}\n",
@@ -75,6 +81,5 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
         "sigma_pixels": sigma,
         "run": run.json(),
     });
-    finish(outputs, &run)?;
     args.common.print(args.copies.paths(), &text, &json)
 }

@@ -1,72 +1,111 @@
 //! To which class each point belongs.
 
-use fsot::class::ClassFunction;
+use fsot::class::{Class, ClassFunction};
+use fsot::counted::counted;
+use fsot::error::{Error, Result};
 use fsot::export::points::Labels;
 use fsot::optimize::Problem;
 
-/// The class functions' values at every point.
+/// The class functions at every point: evaluated when they are asked for, since all values of many classes may take
+/// more memory than the optimisation.
 pub(super) struct Classes {
-    names: Vec<String>,
-    /// Of each class, at each point.
-    values: Vec<Vec<f32>>,
-    /// Whether each class follows the uniform distribution.
-    uniform: Vec<bool>,
+    problem: Problem,
+    /// The sum of each class's values.
+    sums: Vec<f64>,
+    /// How many points each class holds.
+    members: Vec<usize>,
     /// The points of a progressive set that are uniform: the first of them, by number.
     prefixes: Vec<usize>,
 }
 
 impl Classes {
     pub(super) fn of(problem: &Problem) -> Classes {
-        let values = |function| -> Vec<f32> {
-            (0..problem.points).map(|i| problem.class_coordinates.value(function, i, problem.points)).collect()
-        };
-        let prefixes = match problem.classes.as_slice() {
-            [class] if class.target.is_uniform() && !matches!(class.function, ClassFunction::Constant) => {
-                prefixes(&values(&class.function))
+        let mut classes =
+            Classes { problem: problem.clone(), sums: Vec::new(), members: Vec::new(), prefixes: Vec::new() };
+        for class in &problem.classes {
+            let (mut sum, mut members) = (0.0, 0);
+            for value in classes.values(class) {
+                sum += f64::from(value);
+                members += usize::from(value > 0.0);
             }
-            _ => Vec::new(),
-        };
-        Classes {
-            names: problem.classes.iter().map(|class| class.name.clone()).collect(),
-            values: problem.classes.iter().map(|class| values(&class.function)).collect(),
-            uniform: problem.classes.iter().map(|class| class.target.is_uniform()).collect(),
-            prefixes,
+            classes.sums.push(sum);
+            classes.members.push(members);
         }
+        if let [class] = problem.classes.as_slice()
+            && class.target.is_uniform()
+            && !matches!(class.function, ClassFunction::Constant)
+        {
+            classes.prefixes = prefixes(classes.values(class));
+        }
+        classes
+    }
+
+    fn value(&self, class: &Class, point: usize) -> f32 {
+        self.problem.class_coordinates.value(&class.function, point, self.problem.points)
+    }
+
+    fn values(&self, class: &Class) -> impl Iterator<Item = f32> {
+        (0..self.problem.points).map(move |point| self.value(class, point))
+    }
+
+    /// Whether a class, by its index, holds a point.
+    pub(super) fn holds(&self, class: usize, point: usize) -> bool {
+        self.value(&self.problem.classes[class], point) > 0.0
+    }
+
+    /// Fails if a class has no point, or a point no class that moves it: who wrote the classes meant others.
+    pub(super) fn check(&self) -> Result<()> {
+        let points = self.problem.points;
+        let classes = &self.problem.classes;
+        if let Some((class, _)) = classes.iter().zip(&self.members).find(|(_, members)| **members == 0) {
+            return Err(Error::Input(format!(
+                "class {:?} has none of {}: give it a longer part of the index, or ask for more points",
+                class.name,
+                counted(points, "point")
+            )));
+        }
+        let is_free = |point: &usize| {
+            let mut moving = classes.iter().filter(|class| class.weight > 0.0);
+            moving.all(|class| self.value(class, *point) <= 0.0)
+        };
+        let mut free = (0..points).filter(is_free);
+        let Some(first) = free.next() else { return Ok(()) };
+        Err(Error::Input(format!(
+            "no class of a weight above 0 has {} of {points}, from index {:.4} on: what no class has is never moved",
+            counted(1 + free.count(), "point"),
+            (first as f64 + 0.5) / points as f64
+        )))
     }
 
     /// The class in which a point counts most, of those the one with the fewest points; none if all points share one.
     pub(super) fn labels(&self) -> Option<Labels> {
-        let sizes: Vec<f64> = self.values.iter().map(|values| values.iter().copied().map(f64::from).sum()).collect();
-        let points = self.values.first().map_or(0, Vec::len);
-        let best = |point: usize| -> usize {
-            let order = |a: &usize, b: &usize| {
-                self.values[*a][point]
-                    .total_cmp(&self.values[*b][point])
-                    .then(sizes[*b].total_cmp(&sizes[*a]))
-                    .then(b.cmp(a))
-            };
-            (0..self.values.len()).max_by(order).unwrap_or(0)
+        let classes = &self.problem.classes;
+        let order = |(a, a_value): &(usize, f32), (b, b_value): &(usize, f32)| {
+            a_value.total_cmp(b_value).then(self.sums[*b].total_cmp(&self.sums[*a])).then(b.cmp(a))
         };
-        let labels = Labels::from_names((0..points).map(|point| word(&self.names[best(point)])));
+        let best = |point: usize| {
+            let values = classes.iter().map(|class| self.value(class, point)).enumerate();
+            values.max_by(order).map_or(0, |(class, _)| class)
+        };
+        let labels = Labels::from_names((0..self.problem.points).map(|point| word(&classes[best(point)].name)));
         (labels.names.len() > 1).then_some(labels)
     }
 
     /// Whether all points together shall be uniform: every class that holds them all, or every class if none does.
     pub(super) fn all_uniform(&self) -> bool {
-        let all = |values: &Vec<f32>| values.iter().all(|value| *value > 0.0);
-        let whole = self.values.iter().any(all);
-        self.values.iter().zip(&self.uniform).all(|(values, uniform)| *uniform || (whole && !all(values)))
+        let all = |members: usize| members == self.problem.points;
+        let whole = self.members.iter().any(|members| all(*members));
+        let mut classes = self.problem.classes.iter().zip(&self.members);
+        classes.all(|(class, members)| class.target.is_uniform() || (whole && !all(*members)))
     }
 
-    /// Uniform classes that hold some points but not all: name, and whether each point belongs.
-    pub(super) fn parts(&self) -> impl Iterator<Item = (&str, &[f32])> {
-        let part = |values: &[f32]| values.iter().any(|value| *value > 0.0) && values.iter().any(|value| *value <= 0.0);
-        self.names
-            .iter()
-            .zip(&self.values)
-            .zip(&self.uniform)
-            .filter(move |((_, values), uniform)| **uniform && part(values))
-            .map(|((name, values), _)| (&name[..], &values[..]))
+    /// Uniform classes that hold some points but not all: name, and index.
+    pub(super) fn parts(&self) -> impl Iterator<Item = (&str, usize)> {
+        let part = |members: usize| members > 0 && members < self.problem.points;
+        let classes = self.problem.classes.iter().zip(&self.members).enumerate();
+        classes
+            .filter(move |(_, (class, members))| class.target.is_uniform() && part(**members))
+            .map(|(number, (class, _))| (&class.name[..], number))
     }
 
     /// Numbers of points, ascending, whose first points are a subclass.
@@ -76,12 +115,21 @@ impl Classes {
 }
 
 /// Where a falling function falls; none if it rises somewhere.
-fn prefixes(values: &[f32]) -> Vec<usize> {
-    if values.windows(2).any(|pair| pair[0] < pair[1]) {
-        return Vec::new();
+fn prefixes(values: impl Iterator<Item = f32>) -> Vec<usize> {
+    let (mut falls, mut last, mut count) = (Vec::new(), f32::INFINITY, 0);
+    for value in values {
+        if value > last {
+            return Vec::new();
+        }
+        if value < last && count > 0 {
+            falls.push(count);
+        }
+        (last, count) = (value, count + 1);
     }
-    let falls = values.windows(2).zip(1..).filter(|(pair, _)| pair[0] > pair[1]).map(|(_, end)| end);
-    falls.chain(values.last().filter(|value| **value > 0.0).map(|_| values.len())).collect()
+    if last > 0.0 {
+        falls.push(count);
+    }
+    falls
 }
 
 /// A class's name in a file of points.

@@ -29,8 +29,8 @@ pub(super) fn report(out: &Path, table: &Table, classes: &Classes, run: &Run) ->
         json["quality"] = json!(whole);
     }
     let mut rows = Vec::new();
-    for (name, values) in classes.parts().take(ROWS) {
-        rows.push((name, metrics::quick(&metrics::select(points, |i| values[i] > 0.0))?));
+    for (name, class) in classes.parts().take(ROWS) {
+        rows.push((name, metrics::quick(&metrics::select(points, |i| classes.holds(class, i)))?));
     }
     if !rows.is_empty() {
         parts(&mut text, &rows);

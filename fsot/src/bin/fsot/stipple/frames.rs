@@ -8,7 +8,7 @@ use fsot::error::{Error, Result};
 use fsot::export::points::Table;
 use fsot::optimize::Optimizer;
 use fsot::output::Outputs;
-use fsot::picture::{Photo, blurred_psnr, rasterise};
+use fsot::picture::{Photo, blurred_psnr, check_size, rasterise};
 use fsot::read;
 use fsot::stipple::{Animation, Windows};
 use serde_json::json;
@@ -51,23 +51,33 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     }
     let options = args.options(needed);
     let animation = Animation::new(&photos, windows, &options)?;
+    let size = args.size(animation.spacing());
+    photos.iter().try_for_each(|photo| check_size(photo.extent(), size as f32).map(|_| ()))?;
     let mut optimizer = Optimizer::new(animation.problem.clone())?;
     let run = drive(&mut optimizer, &args.description(&digests, &options), &args.common)?;
 
     let points = optimizer.points();
-    let size = args.size(animation.spacing());
-    let sigma = animation.spacing() * size as f32;
+    drop(optimizer);
     let mut outputs = Outputs::new();
-    let mut ratios = Vec::new();
     for (frame, path) in outs.iter().enumerate() {
         let drawing = animation.frame(&points, frame);
-        let drawn = rasterise(&drawing, size as f32)?;
-        ratios.push(blurred_psnr(&drawn, &photos[frame], sigma, args.linear(), true));
-        outputs.add(path, &format.encode(&drawing, &drawn, size)?)?;
+        outputs.add(path, &format.encode(&drawing, &rasterise(&drawing, size as f32)?, size)?)?;
     }
     let all = animation.all(&points);
     outputs.add(&args.common.out, &format.encode(&all, &rasterise(&all, size as f32)?, size)?)?;
-    args.copies.add(&mut outputs, &all, size, &Table { points, classes: None })?;
+    let table = Table { points, classes: None };
+    args.copies.add(&mut outputs, &all, size, &table)?;
+    finish(outputs, &run)?;
+    if args.common.quiet {
+        return Ok(());
+    }
+
+    let sigma = animation.spacing() * size as f32;
+    let ratio = |(frame, photo): (usize, &Photo)| {
+        let drawn = rasterise(&animation.frame(&table.points, frame), size as f32)?;
+        Ok(blurred_psnr(&drawn, photo, sigma, args.linear(), true))
+    };
+    let ratios: Vec<f64> = photos.iter().enumerate().map(ratio).collect::<Result<_>>()?;
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
     let worst = ratios.iter().copied().fold(f64::INFINITY, f64::min);
     let mut text = format!(
@@ -90,7 +100,6 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
         "sigma_pixels": sigma,
         "run": run.json(),
     });
-    finish(outputs, &run)?;
     args.common.print(args.copies.paths(), &text, &json)
 }
 
