@@ -135,7 +135,11 @@ pub fn check<'a, 'b>(
 /// made in the folder.
 fn place(path: &Path) -> Result<PathBuf> {
     if is_stream(path) {
-        return Ok(if is_standard_output(path) { STANDARD_OUTPUT.into() } else { path.to_owned() });
+        return Ok(match path {
+            path if is_standard_output(path) => STANDARD_OUTPUT.into(),
+            path if is_standard_error(path) => STANDARD_ERROR.into(),
+            path => path.to_owned(),
+        });
     }
     let place = fs::canonicalize(path).or_else(|_| followed(path))?;
     if place.is_dir() || path.as_os_str().as_encoded_bytes().last().is_some_and(|last| is_separator((*last).into())) {
@@ -192,8 +196,8 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
 pub fn is_stream(path: &Path) -> bool {
     // What these names stand for may be a regular file, opened by the shell.
     is_standard_output(path)
-        || path == STANDARD_ERROR
-        || path.parent() == Some(Path::new("/dev/fd"))
+        || is_standard_error(path)
+        || is_open_file(path)
         || fs::metadata(path).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
 }
 
@@ -204,13 +208,27 @@ fn is_standard_output(path: &Path) -> bool {
     path == "-" || path == STANDARD_OUTPUT || path == "/dev/fd/1"
 }
 
+fn is_standard_error(path: &Path) -> bool {
+    path == STANDARD_ERROR || path == "/dev/fd/2"
+}
+
+fn is_open_file(path: &Path) -> bool {
+    path.parent() == Some(Path::new("/dev/fd"))
+}
+
+/// Opens something that is written to. On Linux the name of an open file opens it once more, at its beginning: what it
+/// holds, of whoever opened it, stays.
+fn open_stream(path: &Path) -> std::io::Result<File> {
+    OpenOptions::new().write(true).append(is_open_file(path)).open(path)
+}
+
 /// Whether a pipe or a device is there, and can be opened. A pipe is not opened: that waits until somebody reads it.
 fn check_stream(path: &Path) -> std::io::Result<()> {
     #[cfg(unix)]
-    if !is_standard_output(path) && path != STANDARD_ERROR {
+    if !is_standard_output(path) && !is_standard_error(path) {
         use std::os::unix::fs::FileTypeExt;
         if !fs::metadata(path)?.file_type().is_fifo() {
-            OpenOptions::new().write(true).open(path)?;
+            open_stream(path)?;
         }
     }
     #[cfg(not(unix))]
@@ -223,11 +241,11 @@ fn write_stream(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
         let mut stream = std::io::stdout().lock();
         return stream.write_all(bytes).and_then(|()| stream.flush());
     }
-    if path == STANDARD_ERROR {
+    if is_standard_error(path) {
         let mut stream = std::io::stderr().lock();
         return stream.write_all(bytes).and_then(|()| stream.flush());
     }
-    let mut stream: File = OpenOptions::new().write(true).open(path)?;
+    let mut stream = open_stream(path)?;
     stream.write_all(bytes)?;
     stream.flush()
 }

@@ -8,6 +8,8 @@ use fsot::target::Target;
 use image::codecs::jpeg::JpegEncoder;
 use image::{GrayImage, ImageEncoder, Luma, Rgb, Rgb32FImage, Rgba, Rgba32FImage, RgbaImage};
 use serde_json::Value;
+#[cfg(target_os = "linux")]
+use std::io::Write;
 
 const FAST: &str = "--iterations 5";
 
@@ -18,7 +20,11 @@ fn json(place: &Place, arguments: &str) -> Value {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_folder_of_memory_in_dev_holds_files_like_any_other() {
-    let Ok(folder) = tempfile::tempdir_in("/dev/shm") else { return };
+    let Ok(folder) = tempfile::tempdir_in("/dev/shm") else {
+        // Not captured as what tests print is, and in a line that `cargo xtask test` looks for.
+        std::io::stderr().write_all(b"\nnot run: files in /dev/shm, which cannot be written here\n").unwrap();
+        return;
+    };
     let place = Place::new();
     let out = folder.path().join("t.nft");
     let arguments = format!("tile --size 16 --iterations 2 --integrands 1 --out {}", out.display());
@@ -44,7 +50,25 @@ fn devices_and_open_files_are_written_to() {
     assert_eq!(output.stderr, place.read("p.txt"));
     let output = place.run(&format!("points -n 10 --quiet --out /dev/fd/1 {FAST}"));
     assert_eq!(output.stdout, place.read("p.txt"), "{}", error(&output));
+    place.refuse(&format!("points -n 10 --out /dev/stderr --svg /dev/fd/2 {FAST}"), "twice");
     assert_eq!(place.names(), ["p.txt"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_an_open_file_holds_stays() {
+    let place = Place::new();
+    place.succeed(&format!("points -n 10 --out p.txt {FAST}"));
+    let expected = [b"head\n".to_vec(), place.read("p.txt"), b"tail\n".to_vec()].concat();
+    for (number, quiet) in [(1, ""), (2, "--quiet"), (3, ""), (17, "")] {
+        place.write("log", "head\n");
+        let arguments = format!("points -n 10 --out /dev/fd/{number} {quiet} {FAST}");
+        let script = format!("exec {number}>>log; '{}' {arguments}; echo tail >&{number}", env!("CARGO_BIN_EXE_fsot"));
+        let mut shell = std::process::Command::new("bash");
+        let output = shell.args(["-c", &script]).current_dir(place.path("")).output().unwrap();
+        assert!(output.status.success(), "{}", error(&output));
+        assert_eq!(place.read("log"), expected, "descriptor {number}: {}", error(&output));
+    }
 }
 
 #[cfg(target_os = "linux")]
@@ -245,7 +269,7 @@ fn more_memory_than_there_is() {
     for arguments in [
         "points -n 268435456 -d 8 --out p.txt",
         "points -n 268435456 --progressive 3 --out p.txt",
-        "tile --size 1024 --spp 256 -d 1 --threads 2 --out t.nft",
+        "tile --size 512 --spp 64 -d 1 --temporal 16 --temporal-kernel ema:0.1 --kernel gaussian:0.5 --out t.nft",
     ] {
         place.refuse(arguments, "bytes of memory");
     }

@@ -177,6 +177,8 @@ fn bad_input_is_refused_and_nothing_written() {
     fail(&folder, &["measure", "--scenes", "/nowhere", "--integrands", "3"], &["--integrands"]);
     fail(&folder, &["measure", "--scenes", "/nowhere", "--ema", "7"], &["--ema"]);
     fail(&folder, &["measure", &good, "--ema", "0.5", "--quick"], &["for tiles, and there is none"]);
+    let still = &["measure", "--size", "8", "--ema", "0.3", &good];
+    fail(&folder, still, &["--ema is for tiles of several frames, and there is none"]);
     fail(&folder, &["measure", &good, "--integrands", "9"], &["--integrands is for --prefix and tiles"]);
     fail(&folder, &["measure", &good, "--size", "8", "--quick"], &["--quick is for point sets, and there is none"]);
     fail(&folder, &["measure", &good, "--prefix", "--quick"], &["--quick"]);

@@ -150,19 +150,27 @@ impl Default for TileOptions {
     }
 }
 
+impl TileOptions {
+    /// Errors: no integrand; an alpha out of range.
+    pub fn check(&self) -> Result<()> {
+        if self.integrands == 0 {
+            return Err(Error::input("0 integrands: give at least 1"));
+        }
+        if let Some(alpha) = self.alphas.iter().find(|&&a| !(a > 0.0 && a <= 1.0)) {
+            return Err(Error::input(format!("a moving average of alpha {alpha}: it must be above 0 and at most 1")));
+        }
+        Ok(())
+    }
+}
+
 /// Measures a tile: for every random integrand, the same at every pixel, the image of (pixel's estimate - integral) is
 /// filtered by toroidal convolution with a normalised kernel; energies are sums over integrands of its mean square over
 /// sums of its expectation for white noise, `variance / spp * sum of the kernel's squares`. With 512 integrands, two
 /// draws of them differ by 1-5 %.
 ///
-/// Errors: no integrand; an alpha out of range.
+/// Errors: those of [`TileOptions::check`].
 pub fn measure_tile(tile: &TileView, options: &TileOptions) -> Result<TileReport> {
-    if options.integrands == 0 {
-        return Err(Error::input("0 integrands: give at least 1"));
-    }
-    if let Some(alpha) = options.alphas.iter().find(|&&a| !(a > 0.0 && a <= 1.0)) {
-        return Err(Error::input(format!("a moving average of alpha {alpha}: it must be above 0 and at most 1")));
-    }
+    options.check()?;
     let prefixes = tile.prefixes();
     let mut whole = energies(tile, &(0..tile.dims).collect::<Vec<_>>(), &prefixes, 0, options);
     let pairs = (0..tile.dims).flat_map(|b| (0..b).map(move |a| [a, b]));

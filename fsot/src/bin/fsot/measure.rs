@@ -134,6 +134,12 @@ impl Args {
     fn integrands(&self) -> usize {
         self.integrands.unwrap_or(512) as usize
     }
+
+    fn options(&self) -> TileOptions {
+        let default = TileOptions::default();
+        let alphas = if self.ema.is_empty() { default.alphas } else { self.ema.clone() };
+        TileOptions { integrands: self.integrands(), alphas }
+    }
 }
 
 /// The name of the first file and how many more there are.
@@ -172,6 +178,11 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let tiles = contents.iter().filter(|content| matches!(content, Content::Tile(_))).count();
     if !args.ema.is_empty() && tiles == 0 {
         return Err(idle("--ema", "tiles"));
+    }
+    let moves = |content: &Content| matches!(content, Content::Tile(Samples { frames: 2.., .. }));
+    if !args.ema.is_empty() && !contents.iter().any(moves) {
+        args.options().check()?;
+        return Err(idle("--ema", "tiles of several frames"));
     }
     if args.integrands.is_some() && !args.prefix && tiles == 0 {
         return Err(idle("--integrands", "--prefix and tiles"));
@@ -226,11 +237,7 @@ fn points(args: &Args, path: &Path, table: &Table, text: &mut String) -> Result<
 }
 
 fn tile(args: &Args, path: &Path, samples: &Samples, text: &mut String) -> Result<Value> {
-    let mut options = TileOptions { integrands: args.integrands(), ..TileOptions::default() };
-    if !args.ema.is_empty() {
-        options.alphas.clone_from(&args.ema);
-    }
-    let report = metrics::measure_tile(&samples.view()?, &options)?;
+    let report = metrics::measure_tile(&samples.view()?, &args.options())?;
     let _ = writeln!(text, "{}\n{report}", path.display());
     Ok(json!({ "file": path.to_string_lossy(), "tile": report }))
 }

@@ -24,7 +24,7 @@ const UNIT: f32 = 1.0 / 16_777_216.0;
 const FRAMES: [(&str, Frames); 3] =
     [("frames", Frames::Still), ("moving", Frames::Moving), ("clamped", Frames::Clamped)];
 const FRAMES_OF: usize = 64;
-/// Two-sided 95 % of Student's t with as many degrees of freedom as places less one.
+/// Two-sided 95 % of Student's t with as many degrees of freedom as places less one: places are drawn independently.
 const STUDENT: f64 = 2.0687;
 
 /// A sampler and its errors.
@@ -102,7 +102,8 @@ impl Judged {
         Some(libm::exp(logs / self.errors.len() as f64))
     }
 
-    /// Raw over that of others, of n samples, with half its interval of 95 %: geometric means over scenes and places.
+    /// Raw over that of others, of n samples: geometric means over scenes and places, with half an interval of 95 % for
+    /// that over all places. The samples are the same in all of them: how others of their kind differ it does not say.
     fn beside(&self, others: &Judged) -> Vec<(f64, f64)> {
         let scenes = self.errors.len() as f64;
         let ratio = |(own, other): (&[f64; PLACES], &[f64; PLACES])| {
@@ -154,7 +155,8 @@ fn describe(scenes: &[String], judged: &[Judged]) -> (String, Value) {
             let most = ratios.len();
             let name = &sampler.name;
             let what = format!("{ratio:.3} +- {half:.3} of {}'s at {count}", owen.name);
-            let note = "an interval for that number alone; as the largest of many, it tends to be too large";
+            let note = "+- by where the image lies in these very samples, not by other seeds; as the largest of many, \
+                        it tends to be too large";
             writeln!(text, "{name:<22} raw, worst of 1 to {most} samples: {what} ({note})").unwrap_or(());
         }
     }
