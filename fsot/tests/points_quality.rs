@@ -85,10 +85,9 @@ fn two_colors() {
     assert!(low < 0.014 && report.spectra[0].summary.low <= 0.014, "{low}, {:?}", report.spectra);
 }
 
-/// The long runs that docs/fsot_points.md names. Half a minute of one core; the next one, two minutes:
-/// `cargo test --profile fsot -p noisefloor-fsot --test fsot points_quality:: -- --ignored`.
+/// Half a minute of one core; the next one, two minutes.
 #[test]
-#[ignore = "slow: cargo test --profile fsot -p noisefloor-fsot --test fsot points_quality:: -- --ignored"]
+#[ignore = "long: run by cargo xtask tiles --check"]
 fn four_thousand_points_of_high_quality() {
     let points = optimize(Problem { quality: Quality::High, seed: 1, ..Problem::new(4096, 2) }).unwrap();
     let report = fsot::metrics::measure(&points).unwrap();
@@ -100,7 +99,7 @@ fn four_thousand_points_of_high_quality() {
 }
 
 #[test]
-#[ignore = "slow: cargo test --profile fsot -p noisefloor-fsot --test fsot points_quality:: -- --ignored"]
+#[ignore = "long: run by cargo xtask tiles --check"]
 fn a_quarter_of_a_million_points() {
     let points = optimize(Problem { seed: 1, ..Problem::new(262_144, 2) }).unwrap();
     let nn = fsot::metrics::neighbours::neighbours(&points).unwrap().mean;
