@@ -176,7 +176,7 @@ fn drawings_are_in_place_before_their_report() {
     let place = Place::new();
     image::GrayImage::from_fn(9, 9, |x, _| image::Luma([20 * x as u8])).save(place.path("in.png")).unwrap();
     for (input, out) in [("in.png -n 50", "s.png"), ("--frames in.png --window 50 --step 5", "f.png")] {
-        let mut child = place.start(&format!("stipple {input} --iterations 1 --size 6000 --threads 1 --out {out}"));
+        let mut child = place.start(&format!("stipple {input} --iterations 1 --size 3000 --threads 1 --out {out}"));
         while !place.path(out).exists() {
             assert!(child.try_wait().unwrap().is_none());
             std::thread::sleep(Duration::from_millis(5));
