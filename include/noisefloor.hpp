@@ -410,7 +410,8 @@ private:
 };
 
 // Samples in caller arrays, which must outlive it. The number of samples is f.size() / channels, and all lengths must
-// agree with it: u has config::stride numbers for each sample, of the last at least config::dims.
+// agree with it: u has config::stride (0: dims) numbers for each sample, of the last at least
+// config::dims.
 struct samples {
     detail::kept<const float> u;
     detail::kept<const float> f;

@@ -3,7 +3,7 @@
 #
 # Makes one relocatable object of cargo's static library: only nf_* is visible, what no nf_* needs is dropped.
 # Cargo's own archive also exports compiler-builtins (fmodf, cbrt, ...), which would shadow the C library's.
-# LD, NM and OBJCOPY name other tools than ld, nm and objcopy: GNU's or LLVM's.
+# LD, NM and OBJCOPY name other tools than ld, nm and objcopy: GNU's or LLVM's, whose ld drops .eh_frame here.
 set -eu
 archive=$1
 object=$2

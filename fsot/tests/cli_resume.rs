@@ -96,6 +96,8 @@ fn in_the_last_step() {
     let (mut line, mut said) = (String::new(), BufReader::new(child.stderr.take().unwrap()));
     said.read_line(&mut line).unwrap();
     assert!(line.ends_with("at step 1\n"), "{line}");
+    // The step begins after the line, and takes much longer than this.
+    std::thread::sleep(Duration::from_millis(300));
     signal("INT", child.id());
     said.read_to_string(&mut line).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130), "{line}");

@@ -23,7 +23,7 @@ class Table:
     fraction. Its weight is 1 / (n p_i), but for "distinct": the mean of weight times gradient estimates the gradient of
     the mean loss without bias. A draw and an update take time of O(log n). 4.6 bytes per item.
 
-    Any number of threads may use one table, and a signal's handler may call `state_dict`; a process forked while
+    Any number of threads may use one table, and a signal's handler may call `state_dict` alone; a process forked while
     another thread uses it may not. Tables can be pickled and copied; a copy draws the same minibatches.
 
     Args:

@@ -201,7 +201,7 @@ class ImportanceBatchSampler(Sampler):
         overflowed where the loss was scaled."""
         # Until all were visited once, what was is the 1 that stands for nothing.
         handed = self._drawn - len(self._ahead) - len(self._replay)
-        first = self._last[2] if self._last is not None else handed < max(self._warmup, 1)
+        first = self._last[2] if self._last is not None else handed < max(self._warmup, int(self.epoch == 0))
         if index is None:
             own = self._own(0)
         else:
@@ -271,7 +271,7 @@ class ImportanceBatchSampler(Sampler):
         return whole[:-1].flatten(0, 1)
 
     @torch.no_grad()
-    def update_from(self, logits: torch.Tensor, *, reduction: str = "mean", scale: float = 1.0) -> None:
+    def update_from(self, logits: torch.Tensor, *, reduction: str = "mean", scale: float | None = None) -> None:
         """As `update`, by the norm of each item's derivative of the loss by its outputs. After the backward pass, with
         `logits.retain_grad()` before it.
 
@@ -279,10 +279,10 @@ class ImportanceBatchSampler(Sampler):
             logits: the model's outputs, (batch_size,) or (batch_size, ...), any loss's.
             reduction: "mean" or "sum": how the weighted losses of the batch were added up.
             scale: what the loss was multiplied by besides, 1e-30 to 3.4e38: `scaler.get_scale()` of a GradScaler,
-                before `scaler.update()`. If it is not 1, items whose derivatives overflowed are left out, as the
-                scaler leaves out the step; else they are refused.
+                before `scaler.update()`, in every process. If given, items whose derivatives overflowed are left out,
+                as the scaler leaves out the step; else they are refused.
         """
-        scale = _arrays.number("scale", scale, 1e-30, 3.4e38)
+        scaled, scale = scale is not None, _arrays.number("scale", 1.0 if scale is None else scale, 1e-30, 3.4e38)
         if logits.grad is None:
             raise ValueError("logits.grad is None: call logits.retain_grad() before the backward pass")
         if logits.is_complex():
@@ -293,7 +293,7 @@ class ImportanceBatchSampler(Sampler):
         count = _arrays.one_of("reduction", reduction, {"mean": len(weight), "sum": 1})
         gradient = logits.grad.float().reshape(len(weight), -1) * (count / scale) / weight[:, None]
         if len(self._tables) == 1:
-            self._learn(gradient.norm(dim=1), scaled=scale != 1)
+            self._learn(torch.linalg.vector_norm(gradient, dim=1), scaled=scaled)
             return
         groups = len(self._tables) // 2
         if gradient.shape[1] < groups:
@@ -303,7 +303,7 @@ class ImportanceBatchSampler(Sampler):
         parts = [sign[:, group::groups].norm(dim=1) for group in range(groups) for sign in signs]
         importance = torch.stack(parts, 1)
         importance[weight.abs() < LEAST_WEIGHT] = -1
-        self._learn(importance, scaled=scale != 1)
+        self._learn(importance, scaled=scaled)
 
     def state_dict(self) -> dict[str, Any]:
         """All that decides the batches to come, those that workers were asked for included, but for the constructor's

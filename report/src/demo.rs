@@ -72,7 +72,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     println!("rendering");
     scenes(options, &renderer, &output)?;
     // The page may be built where it is shown.
-    let page = page.map_err(|_| anyhow!("the page's build was lost"))?;
+    let page = page.unwrap_or_else(|_| Err(anyhow!("the page's build was lost")));
     let is_there = |file: &str| file == PAGE && page.as_ref().is_ok_and(|page| *page == folder.join(PAGE));
     let shown = SHOWN.iter().map(|(file, _)| *file).filter(|file| !is_there(file)).map(str::to_owned);
     output.commit(&shown.collect::<Vec<_>>())?;

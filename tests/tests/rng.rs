@@ -71,7 +71,7 @@ fn next_u64_is_two_outputs_the_lower_first() {
     assert_eq!(once.next_u64(), u64::from(twice.next_u32()) << 32 | low);
 }
 
-/// z beyond this has probability 1e-5.
+/// z beyond this has probability 1e-5, either way 2e-5.
 const Z_LIMIT: f64 = 4.265;
 
 #[test]

@@ -84,7 +84,7 @@ fn squared_length(d: Vec3) -> f64 {
     f64::from(d.x).powi(2) + f64::from(d.y).powi(2) + f64::from(d.z).powi(2)
 }
 
-/// Beyond 4.265 has probability 1e-5.
+/// Beyond 4.265 either way has probability 2e-5.
 fn assert_uniform(name: &str, counts: &[u64]) {
     let z = uniform_z(counts);
     assert!(z.abs() < 4.265, "{name}: chi-square z = {z:.2}");

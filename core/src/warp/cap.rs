@@ -49,7 +49,8 @@ pub fn uniform_cap(u: Vec2, height: f32) -> Vec3 {
 }
 
 /// The density of [`uniform_cap`] per solid angle: 1/(2 pi height) in the cap, 0 outside. A cap of no height has
-/// infinite density.
+/// infinite density. A sample that was turned into the world and back may lie just outside a small one: its density is
+/// that from before.
 pub fn uniform_cap_pdf(direction: Vec3, height: f32) -> f32 {
     let height = clamped(height);
     let is_inside = is_direction(direction) && drop(direction) <= height * (1.0 + RIM);

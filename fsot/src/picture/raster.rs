@@ -31,7 +31,12 @@ pub fn check_size(size: [f32; 2], scale: f32) -> Result<(usize, usize)> {
             "a picture of {width} x {height} pixels cannot be drawn: choose a size of at most 400 million pixels"
         )));
     }
-    memory::check((width * height) as u64 * PIXEL)?;
+    memory::check((width * height) as u64 * PIXEL).map_err(|_| {
+        Error::Input(format!(
+            "a picture of {width} x {height} pixels needs more memory than there is: \
+            choose a smaller size"
+        ))
+    })?;
     Ok((width as usize, height as usize))
 }
 

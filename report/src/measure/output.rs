@@ -53,15 +53,12 @@ impl Output {
     pub(crate) fn commit(self, former: &[String]) -> Result<()> {
         let move_all = || -> Result<()> {
             fs::create_dir_all(&self.folder)?;
-            former
-                .iter()
-                .map(|name| self.folder.join(name))
-                .filter(|path| path.exists())
-                .try_for_each(fs::remove_file)?;
-            for name in self.names()? {
-                fs::rename(self.pending.path().join(&name), self.folder.join(&name))?;
+            let names = self.names()?;
+            for name in &names {
+                fs::rename(self.pending.path().join(name), self.folder.join(name))?;
             }
-            Ok(())
+            let gone = former.iter().filter(|name| !names.contains(name)).map(|name| self.folder.join(name));
+            Ok(gone.filter(|path| path.exists()).try_for_each(fs::remove_file)?)
         };
         move_all().with_context(|| format!("cannot move the results to {}", self.folder.display()))
     }
