@@ -16,8 +16,8 @@ use crate::real::saturate;
 ///
 /// and L the ridge of [`Solver::Ridge`], or the pseudo-inverse G = N^1/2 (N^1/2 A N^1/2)^+ N^1/2 without one, N having
 /// the counts ([`Solver::Plain`]: then v_s is also 1' G p_s / S_s^2), or only the first term ([`Solver::Balance`]). The
-/// balance weights are positive and unbiased. The others are consistent, not unbiased, as A comes from the samples it is
-/// applied to; they may be negative. A gradient that is a linear combination of the p_j at every item is estimated
+/// balance weights are positive and unbiased. The others are consistent, not unbiased, as A comes from the samples it
+/// is applied to; they may be negative. A gradient that is a linear combination of the p_j at every item is estimated
 /// exactly by [`Solver::Plain`], from any batch that tells them apart (A is not singular).
 ///
 /// `weight` has one element per sample; one beyond the range of `f32` becomes the largest finite one.

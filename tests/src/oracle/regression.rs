@@ -147,9 +147,10 @@ impl Regression {
     }
 
     /// How far the samples' centre is from the domain's, where every term has mean zero:
-    /// F = q (n - 1 - d) / d, Hotelling's but for its n - d, with a_i = c_i' A^-1 m for the column means m, q = n sum a_i^2 (the variance of the
-    /// fit's constant is (1 + q) / n times the residual's) and d = sum c_i' A^-1 c_i, at most n - 1.5, the degrees of
-    /// freedom the ridge leaves. About 1 for well spread samples. Needs ridge > 0. Returns F and d.
+    /// F = q (n - 1 - d) / d, Hotelling's but for its n - d, with a_i = c_i' A^-1 m for the column means m,
+    /// q = n sum a_i^2 (the variance of the fit's constant is (1 + q) / n times the residual's) and
+    /// d = sum c_i' A^-1 c_i, at most n - 1.5, the degrees of freedom the ridge leaves. About 1 for well spread
+    /// samples. Needs ridge > 0. Returns F and d.
     pub fn offset(design: &Design, ridge: f64) -> (f64, f64) {
         let n = design.rows.len() as f64;
         let means = design.means();

@@ -23,8 +23,8 @@ const MAX_SIDE: usize = 4096;
 /// downwards from the first row.
 ///
 /// Projections (5.23-5.24) are analytic: a cell's footprint on a line is a trapezoid, whose mass in each bin of a
-/// histogram as wide as the longer side of the projected cell is exact; within a bin the density is four steps of a line
-/// whose slope is limited by the neighbours'.
+/// histogram as wide as the longer side of the projected cell is exact; within a bin the density is four steps of a
+/// line whose slope is limited by the neighbours'.
 ///
 /// Densities are relative to the mass spread evenly over the rectangle's mean projected length, not over that of the
 /// direction at hand as in (5.24): that one is longer on diagonals, which weighs them more, and in long runs aligns
