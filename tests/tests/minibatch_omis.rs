@@ -517,7 +517,7 @@ proptest! {
         items in 1_u32..,
         style in 0..4,
         seed in any::<u64>(),
-        beta in -0.2_f32..1.2,
+        beta in -0.25_f32..1.25,
         ridge in prop_oneof![Just(DEFAULT_RIDGE), any::<f32>()],
         kind in 0_usize..4,
     ) {

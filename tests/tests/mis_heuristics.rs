@@ -61,7 +61,8 @@ proptest! {
 
     #[test]
     fn the_unit_of_the_densities_does_not_matter(
-        both in prop::collection::vec((0.01..10.0_f32, 1..9_u32), 1..=16),
+        // Proptest 1.12 asserts too much of ends that are no multiples of the largest value's last bit.
+        both in prop::collection::vec((0.0078125..10.0_f32, 1..9_u32), 1..=16),
         exponent in -100..100_i32,
     ) {
         let (pdf, counts): (Vec<f32>, Vec<u32>) = both.into_iter().unzip();
