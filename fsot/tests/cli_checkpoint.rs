@@ -4,6 +4,7 @@ use fsot::checkpoint::{Problem, remove, resume, save};
 use fsot::run::Optimization;
 use serde_json::json;
 use std::fs;
+use std::path::{Path, PathBuf};
 
 /// Each step depends on the number of the step and on every bit of the state.
 struct Walk {
@@ -59,6 +60,14 @@ fn problem(points: u32) -> Problem {
     Problem::new(&json!({"command": "walk", "points": points, "options": {"seed": 1, "toroidal": false}})).unwrap()
 }
 
+/// The checkpoint of a walk that begins, and its bytes.
+fn saved(folder: &Path) -> (PathBuf, Vec<u8>) {
+    let path = folder.join("run.checkpoint");
+    save(&path, &problem(7), &Walk::new()).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    (path, bytes)
+}
+
 #[test]
 fn resumes_with_the_same_bits() {
     let folder = tempfile::tempdir().unwrap();
@@ -87,9 +96,7 @@ fn a_missing_checkpoint_is_a_new_start() {
 #[test]
 fn every_truncation_and_every_flipped_byte_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("run.checkpoint");
-    save(&path, &problem(7), &Walk::new()).unwrap();
-    let good = fs::read(&path).unwrap();
+    let (path, good) = saved(folder.path());
     let refused = |bytes: &[u8]| {
         fs::write(&path, bytes).unwrap();
         let mut walk = Walk::new();
@@ -134,9 +141,7 @@ fn a_foreign_checkpoint_is_refused_with_what_differs() {
 #[test]
 fn a_checkpoint_of_another_build_is_refused_and_stays() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("run.checkpoint");
-    save(&path, &problem(7), &Walk::new()).unwrap();
-    let whole = fs::read(&path).unwrap();
+    let (path, whole) = saved(folder.path());
     let (key, mut bytes) = (b"\"program\":\"", whole[..whole.len() - 32].to_vec());
     let at = bytes.windows(key.len()).position(|part| part == key).unwrap() + key.len();
     bytes[at] = if bytes[at] == b'0' { b'1' } else { b'0' };

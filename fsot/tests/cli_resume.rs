@@ -97,7 +97,7 @@ fn in_the_last_step() {
     said.read_line(&mut line).unwrap();
     assert!(line.ends_with("at step 1\n"), "{line}");
     // The step begins after the line, and takes much longer than this.
-    std::thread::sleep(Duration::from_millis(300));
+    sleep(Duration::from_millis(300));
     signal("INT", child.id());
     said.read_to_string(&mut line).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130), "{line}");

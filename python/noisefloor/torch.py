@@ -96,7 +96,6 @@ class ImportanceBatchSampler(Sampler):
         # Seeds that no other sampler's tables have, unless its seed is as far away as nobody counts.
         seeds = [(self._seed + j * 0x9E3779B97F4A7C15) % 2**64 for j in range(techniques)]
         self._tables = [Table(self._n, uniform_fraction=uniform_fraction, seed=own) for own in seeds]
-        self._fraction = self._tables[0].uniform_fraction
         self.epoch = 0
         self._drawn = self._step = self._unasked = 0
         self._ahead, self._replay, self._last, self._resumed = deque(), deque(), None, False
@@ -300,7 +299,7 @@ class ImportanceBatchSampler(Sampler):
             raise ValueError(f"techniques is {2 * groups}: {gradient.shape[1]} outputs allow {2 * gradient.shape[1]}")
         # The norms of the positive and of the negative part of every group of outputs (6.2.3).
         signs = gradient.clamp(min=0), (-gradient).clamp(min=0)
-        parts = [sign[:, group::groups].norm(dim=1) for group in range(groups) for sign in signs]
+        parts = [torch.linalg.vector_norm(sign[:, group::groups], dim=1) for group in range(groups) for sign in signs]
         importance = torch.stack(parts, 1)
         importance[weight.abs() < LEAST_WEIGHT] = -1
         self._learn(importance, scaled=scaled)
@@ -340,8 +339,9 @@ class ImportanceBatchSampler(Sampler):
             for table in tables:
                 spare.load_state_dict(table)
         for own, table in zip(self._tables, tables):
+            fraction = own.uniform_fraction
             own.load_state_dict(table)
-            own.uniform_fraction = self._fraction
+            own.uniform_fraction = fraction
         self._seed, self.epoch, self._drawn, self._step = seed, epoch, drawn, step
         self._replay, self._last = replay, None
         self._ahead.clear()

@@ -33,8 +33,7 @@ pub fn check_size(size: [f32; 2], scale: f32) -> Result<(usize, usize)> {
     }
     memory::check((width * height) as u64 * PIXEL).map_err(|_| {
         Error::Input(format!(
-            "a picture of {width} x {height} pixels needs more memory than there is: \
-            choose a smaller size"
+            "a picture of {width} x {height} pixels needs more memory than there is: choose a smaller size"
         ))
     })?;
     Ok((width as usize, height as usize))

@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn cells_are_found_by_their_headings() -> Result<()> {
-        let table = Table::parse("name;n;x\na, b;1;2.5e-1\nc;2;-\na, b;4;3\n", "t.csv")?;
+        let table = Table::parse("name;n;x\na, b;1;2.5e-1\nc;2;\na, b;4;3\nc;5;-\n", "t.csv")?;
         assert_eq!(table.distinct("name")?, ["a, b", "c"]);
         let some = table.of(&[("name", "a, b")]);
         assert_eq!((some.distinct("n")?, some.numbers("x")?), (vec!["1", "4"], vec![0.25, 3.0]));
@@ -226,6 +226,7 @@ mod tests {
             (rows[0].number::<u32>("n")?, rows[0].optional("x")?, rows[1].optional("x")?),
             (1, Some(0.25), None)
         );
+        assert_eq!(rows[3].optional("x")?, None);
         let error = rows[0].number::<u32>("x").expect_err("no whole number");
         assert!(error.to_string().contains("t.csv: `2.5e-1` in column `x`"), "{error}");
         Ok(())

@@ -10,7 +10,7 @@ use crate::names;
 use crate::pictures::Pictures;
 use classes::Classes;
 use fsot::checkpoint::digest;
-use fsot::class::{self, ClassCoordinates};
+use fsot::class::{self, Class, ClassCoordinates};
 use fsot::error::{Error, Result};
 use fsot::export::points::{Format, Table, encode};
 use fsot::optimize::{Domain, Optimizer, Problem};
@@ -23,8 +23,6 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The classes that need no file. A colour of theirs may have none of a few points.
-const PRESETS: [&str; 3] = ["2color", "3color", "ramp"];
 /// Pixels along the longer side of a picture.
 const PICTURE: f32 = 1024.0;
 /// Pictures whose sides differ by no more than this part have the same shape: their sides are whole pixels.
@@ -90,7 +88,7 @@ fn make(args: &Args) -> Result<()> {
     let (problem, description, extent) = problem(args)?;
     let mut optimizer = Optimizer::new(problem)?;
     let classes = Classes::of(optimizer.problem());
-    if let Some(file) = args.classes.as_deref().filter(|name| !PRESETS.contains(name)) {
+    if let Some(file) = args.classes.as_deref().filter(|name| preset(name, 1).is_none()) {
         classes.check().map_err(in_file(Path::new(file)))?;
     }
     let run = drive(&mut optimizer, &description, &args.common)?;
@@ -114,13 +112,12 @@ fn problem(args: &Args) -> Result<(Problem, Value, [f32; 2])> {
     let (points, dims) = (args.n as usize, usize::from(args.d));
     let mut files = Vec::new();
     let mut extent = [1.0; 2];
-    let mut classes = match (args.progressive, args.classes.as_deref()) {
-        (Some(levels), _) => class::progressive(dims, levels as usize, points),
-        (None, None) => class::single(dims),
-        (None, Some("2color")) => class::two_colors(dims),
-        (None, Some("3color")) => class::three_colors(dims),
-        (None, Some("ramp")) => class::ramp(dims),
-        (None, Some(name)) => {
+    let ready = args.classes.as_deref().and_then(|name| preset(name, dims));
+    let mut classes = match (args.progressive, args.classes.as_deref(), ready) {
+        (Some(levels), ..) => class::progressive(dims, levels as usize, points),
+        (None, None, _) => class::single(dims),
+        (None, _, Some(classes)) => classes,
+        (None, Some(name), None) => {
             let path = Path::new(name);
             if !path.exists() {
                 return Err(Error::Input(format!("--classes {name}: give 2color, 3color, ramp or the name of a file")));
@@ -182,6 +179,16 @@ fn problem(args: &Args) -> Result<(Problem, Value, [f32; 2])> {
         "quality": format!("{:?}", common.effort()),
     });
     Ok((problem, description, extent))
+}
+
+/// The classes that need no file. A colour of theirs may have none of a few points.
+fn preset(name: &str, dims: usize) -> Option<Vec<Class>> {
+    match name {
+        "2color" => Some(class::two_colors(dims)),
+        "3color" => Some(class::three_colors(dims)),
+        "ramp" => Some(class::ramp(dims)),
+        _ => None,
+    }
 }
 
 fn density(path: &Path, dims: usize, points: usize, invert: bool, files: &mut Vec<String>) -> Result<ImageTarget> {

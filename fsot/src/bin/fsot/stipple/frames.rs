@@ -73,6 +73,7 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     }
 
     let sigma = animation.spacing() * size as f32;
+    // Drawn once more: kept, all frames would take the memory that one may.
     let ratio = |(frame, photo): (usize, &Photo)| {
         let drawn = rasterise(&animation.frame(&table.points, frame), size as f32)?;
         Ok(blurred_psnr(&drawn, photo, sigma, args.linear(), true))
