@@ -21,9 +21,9 @@ add_custom_command(
     COMMAND "${CMAKE_COMMAND}" -E env --unset=MAKEFLAGS ${profile}
         ${NOISEFLOOR_CARGO_ENVIRONMENT} "${NOISEFLOOR_CARGO}" ${cargo_build} --quiet --release --locked --lib
         --manifest-path "${CMAKE_CURRENT_SOURCE_DIR}/Cargo.toml" --target-dir "${NOISEFLOOR_CARGO_TARGET_DIR}"
-    COMMAND "${CMAKE_COMMAND}" -E env "LD=${CMAKE_LINKER}" "NM=${CMAKE_NM}" "OBJCOPY=${CMAKE_OBJCOPY}"
-        sh "${CMAKE_CURRENT_SOURCE_DIR}/cmake/one_object.sh" "${archive}" "${object}"
-    DEPENDS ${sources} cmake/one_object.sh ${settings}
+    COMMAND "${CMAKE_COMMAND}" "-DAR=${CMAKE_AR}" "-DARCHIVE=${archive}" "-DOBJECT=${object}"
+        -P "${CMAKE_CURRENT_SOURCE_DIR}/cmake/object.cmake"
+    DEPENDS ${sources} cmake/object.cmake ${settings}
     COMMENT "Compiling noisefloor with cargo"
     VERBATIM)
 # Both libraries are made of it: without a target of its own, a parallel make would make it twice.
@@ -41,14 +41,23 @@ endfunction()
 
 if(NOISEFLOOR_STATIC)
     noisefloor_library(noisefloor_static STATIC)
+    if(CMAKE_SYSTEM_NAME STREQUAL Generic)
+        # With compiler-builtins: these processors compute much in software, for which C's library need not have all.
+        add_custom_command(TARGET noisefloor_static POST_BUILD
+            COMMAND "${CMAKE_COMMAND}" -E copy "${archive}" "$<TARGET_FILE:noisefloor_static>" VERBATIM)
+    endif()
 endif()
 if(NOISEFLOOR_SHARED)
     noisefloor_library(noisefloor SHARED)
-    configure_file(cmake/noisefloor.map.in noisefloor.map @ONLY)
     set_target_properties(noisefloor PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${NOISEFLOOR_ABI_VERSION}
-        LINK_DEPENDS "${CMAKE_CURRENT_BINARY_DIR}/noisefloor.map")
-    target_link_options(noisefloor PRIVATE LINKER:--no-undefined
-        "LINKER:--version-script=${CMAKE_CURRENT_BINARY_DIR}/noisefloor.map")
+        RUNTIME_OUTPUT_NAME noisefloor-${NOISEFLOOR_ABI_VERSION})
+    # Elsewhere symbols have no versions: what can be seen of the object is exported.
+    if(NOT WIN32 AND NOT APPLE)
+        configure_file(cmake/noisefloor.map.in noisefloor.map @ONLY)
+        set_target_properties(noisefloor PROPERTIES LINK_DEPENDS "${CMAKE_CURRENT_BINARY_DIR}/noisefloor.map")
+        target_link_options(noisefloor PRIVATE LINKER:--no-undefined
+            "LINKER:--version-script=${CMAKE_CURRENT_BINARY_DIR}/noisefloor.map")
+    endif()
 else()
     # Who links noisefloor::noisefloor gets what there is.
     add_library(noisefloor::noisefloor ALIAS noisefloor_static)

@@ -53,10 +53,8 @@ elseif(TESTS_UNDER STREQUAL "tsan")
     set(NOISEFLOOR_RUST_TARGET "${CMAKE_MATCH_1}" CACHE STRING "" FORCE)
     set(NOISEFLOOR_OPT_LEVEL 1 CACHE STRING "" FORCE)
     set(NOISEFLOOR_SHARED OFF CACHE BOOL "" FORCE)
-    # Nor does it run long enough to pay for link-time optimisation.
-    set(NOISEFLOOR_CARGO_ENVIRONMENT RUSTC_BOOTSTRAP=1 CARGO_PROFILE_RELEASE_LTO=off
-        CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 "RUSTFLAGS=-Zsanitizer=thread -Cunsafe-allow-abi-mismatch=sanitizer"
-        CACHE STRING "" FORCE)
+    set(NOISEFLOOR_CARGO_ENVIRONMENT RUSTC_BOOTSTRAP=1
+        "RUSTFLAGS=-Zsanitizer=thread -Cunsafe-allow-abi-mismatch=sanitizer" CACHE STRING "" FORCE)
     string(APPEND CMAKE_CXX_FLAGS " -g -fsanitize=thread -pthread")
 elseif(TESTS_UNDER STREQUAL "valgrind")
     find_program(valgrind valgrind)

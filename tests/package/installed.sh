@@ -80,16 +80,6 @@ readelf --dynamic --wide "$shared" | grep -q "Library soname: \[libnoisefloor\.s
 echo "$(wc -l < "$work/found") symbols exported"
 [ "$(readelf --debug-dump=frames "$shared" | grep -c FDE)" -gt 100 ] || fail "$shared has no tables to unwind by"
 
-# LLVM's tools, which CMake takes with clang, do as well.
-if command -v llvm-nm > "$work/log" && command -v llvm-objcopy > "$work/log"; then
-    configure "$work/llvm build" "$work/llvm" lib -DCMAKE_NM="$(command -v llvm-nm)" \
-        -DCMAKE_OBJCOPY="$(command -v llvm-objcopy)"
-    nm --plugin=/none --dynamic --defined-only "$work/llvm build/libnoisefloor.so" | sed 's/.* //' |
-        grep -vx "NOISEFLOOR_$version" | sort > "$work/found"
-    diff "$work/wanted" "$work/found" || fail "LLVM's tools make another library than GNU's"
-    echo "by LLVM's tools"
-fi
-
 project "$package" "$work/a package build" "-DCMAKE_PREFIX_PATH=$moved"
 for program in c_shared c_static cpp_shared cpp_static; do
     linked_as_named "$work/a package build/$program"

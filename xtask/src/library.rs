@@ -8,19 +8,16 @@ use std::path::{Path, PathBuf};
 /// What a C library always provides, and compilers call without being asked.
 const ALLOWED_UNDEFINED: [&str; 4] = ["memcpy", "memmove", "memset", "memcmp"];
 
-/// Debian's tools for RISC-V are named after 64 bits, and link for them unless told otherwise.
-const RISC_V_32: (&str, &str) = ("LDEMULATION", "elf32lriscv");
-
 /// Builds the archive and returns its path.
 ///
-/// capi/cmake/one_object.sh, which the CMake build uses too, says why cargo's own archive is not the one.
+/// capi/cmake/object.cmake, which does the same where CMake builds it, says why cargo's own archive is not the one.
 pub fn build() -> Result<PathBuf> {
     tools::packages(&tools::C)?;
     let host = host()?;
     // As capi/cmake/target.cmake has it, which then finds it done.
     let kind = ["rustc", "--release", "--lib", "--package", "noisefloor-capi", "--crate-type", "staticlib"];
     run::compile(run::cargo().args(kind).args(["--target", &host]))?;
-    one_object(&paths::target().join(host).join("release/libnoisefloor.a"), &paths::output(), "")
+    one_object(&paths::target().join(host).join("release/libnoisefloor.a"), &paths::output(), "ar")
 }
 
 /// This machine, as Rust calls it.
@@ -35,21 +32,18 @@ pub fn settings() -> [String; 2] {
     [format!("NOISEFLOOR_CARGO={cargo}"), format!("NOISEFLOOR_CARGO_TARGET_DIR={}", paths::target().display())]
 }
 
-/// Makes cargo's archive `raw` into one of a single object, in the folder `output`. The binutils' names begin with
-/// `prefix`: nothing, or a target.
-pub fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<PathBuf> {
-    let tool = |name: &str| format!("{prefix}{name}");
+/// Makes cargo's archive `raw` into one of a single object, in the folder `output`, by `ar` or what does its work.
+pub fn one_object(raw: &Path, output: &Path, ar: &str) -> Result<PathBuf> {
     // Complete or not at all, also while another program links the one in place or makes it too.
     let scratch = output.join(format!("scratch.{}", std::process::id()));
     fs::create_dir_all(&scratch).with_context(|| format!("cannot create {}", scratch.display()))?;
-    let (object, new) = (scratch.join("noisefloor.o"), scratch.join("libnoisefloor.a"));
-    run::check(
-        run::command("sh")
-            .args(["capi/cmake/one_object.sh".as_ref(), raw, &object])
-            .envs(["ld", "nm", "objcopy"].map(|name| (name.to_uppercase(), tool(name))))
-            .envs(prefix.starts_with("riscv64").then_some(RISC_V_32)),
-    )?;
-    run::check(run::command(tool("ar")).arg("rcsD").arg(&new).arg(&object))?;
+    let members = run::read(run::command(ar).arg("t").arg(raw))?;
+    let own: Vec<&str> = members.lines().filter(|name| name.starts_with("noisefloor-")).collect();
+    ensure!(own.len() == 1, "{} has {} objects of noisefloor instead of one", raw.display(), own.len());
+    run::check(run::command(ar).current_dir(&scratch).arg("x").arg(raw).args(&own))?;
+    fs::rename(scratch.join(own[0]), scratch.join("noisefloor.o"))?;
+    run::check(run::command(ar).current_dir(&scratch).args(["rcs", "libnoisefloor.a", "noisefloor.o"]))?;
+    let new = scratch.join("libnoisefloor.a");
     let archive = output.join("libnoisefloor.a");
     // What links the library is not built anew where nothing has changed.
     let modified = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).ok();
@@ -61,14 +55,16 @@ pub fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<PathBuf> {
     Ok(archive)
 }
 
-/// Fails if the archive needs anything beyond the four memory functions, exports more than `nf_*`, or can panic.
-pub fn check(archive: &Path) -> Result<()> {
+/// Fails if the archive needs anything beyond the four memory functions, exports more than `nf_*`, or can panic. It may
+/// also need what cargo's own archive `builtins` has: arithmetic that a processor has no instructions for.
+pub fn check(archive: &Path, builtins: Option<&Path>) -> Result<()> {
     let symbols = names(archive, &[])?;
     let panics: Vec<_> = symbols.iter().filter(|(_, name)| name.contains("panic")).collect();
     ensure!(panics.is_empty(), "the library can panic: {panics:?}");
+    let there = builtins.map_or_else(|| Ok(Vec::new()), |archive| names(archive, &["--defined-only"]))?;
     for (kind, name) in &symbols {
         let (is_needed, is_seen) = (["U", "w", "v"].contains(&&**kind), kind.chars().all(char::is_uppercase));
-        let may_be_needed = ALLOWED_UNDEFINED.contains(&name.as_str());
+        let may_be_needed = ALLOWED_UNDEFINED.contains(&name.as_str()) || there.iter().any(|(_, there)| there == name);
         ensure!(!is_needed || may_be_needed, "the library needs `{name}` from elsewhere");
         ensure!(is_needed || !is_seen || name.starts_with("nf_"), "the library exports `{name}`");
     }

@@ -64,7 +64,9 @@ pub fn run(options: &Options) -> Result<()> {
     steps.start("the headers are what capi/ generates", "release", "header");
     steps.start("capi/abi.txt: functions, layouts and constants of the C ABI are as promised", "release", "abi");
     steps.c("headers alone: C99, C11, C++11, C++17, C++20, every warning an error", "default", "headers", &[]);
-    steps.run("the C library: no panic, only mem* undefined, only nf_* visible", || library::check(&library::build()?));
+    steps.run("the C library: no panic, only mem* undefined, only nf_* visible", || {
+        library::check(&library::build()?, None)
+    });
     // Their dependencies are compiled already, in the profile that compiles fast, not the one that runs fast.
     let test = [&["test", "--profile", "xtask"][..], &start::TOOLS].concat();
     steps.cargo("Rust tests of xtask, release and the report (cargo test)", &test, None);

@@ -33,8 +33,7 @@ pub fn ensure() -> Result<()> {
 }
 
 /// What C is compiled with.
-pub const C: [Package; 2] =
-    [Package { name: "build-essential", file: "cc" }, Package { name: "binutils", file: "objcopy" }];
+pub const C: [Package; 2] = [Package { name: "build-essential", file: "cc" }, Package { name: "binutils", file: "ar" }];
 const CPP: Package = Package { name: "g++", file: "c++" };
 
 /// Fails unless there are C and C++ compilers, or $CC and $CXX name others, and binutils.

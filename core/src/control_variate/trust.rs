@@ -12,6 +12,7 @@
 use super::per_channel::PerChannel;
 use crate::matrix::{at, first_mut};
 use crate::real::Real;
+use core::hint::black_box;
 
 /// Trust in a candidate is its error, relative to the mean's, to the power of minus this times the number of samples
 /// (of pixels, where pixels are compared) that judge it.
@@ -191,7 +192,6 @@ impl<R: Real, const C: usize> Mixture<R, C> {
 
 /// Sets `weights` to those of C candidates, (error / plain error)^(-power) / C less a discount, and returns the plain
 /// mean's, all normalised. Errors are sums of squares.
-// On its own, of two weights, it is compiled to a division in four lanes, two of them 0 / 0: FE_INVALID.
 #[inline(always)]
 fn weigh<R: Real>(judge: &Judge<R>, plain: R, errors: &[R], discounts: &[R], weights: &mut [R]) -> R {
     let Judge { n, power, prior } = *judge;
@@ -223,8 +223,9 @@ fn weigh<R: Real>(judge: &Judge<R>, plain: R, errors: &[R], discounts: &[R], wei
         *weight = (*weight - largest).exp();
         total += *weight;
     }
+    // Behind a black box, or two are divided in four lanes, two of them 0 / 0: FE_INVALID.
     for weight in weights {
-        *weight = *weight / total;
+        *weight = black_box(*weight / total);
     }
     plain_weight / total
 }

@@ -6,6 +6,7 @@
 
 use crate::matrix::{Panel, Triangle, split_at};
 use crate::real::Real;
+use core::hint::black_box;
 use core::ops::{Deref, DerefMut};
 
 /// Rotates one row into the factor: `x` has one number for each column, `y` one for each right-hand side, of which
@@ -66,8 +67,10 @@ fn quotient<R: Real>(value: R, pivot: R) -> R {
 
 /// (c, s, r) with c a + s b = r and c b - s a = 0, without overflow.
 fn rotation<R: Real>(a: R, b: R) -> (R, R, R) {
+    // Each quotient behind a black box, or both are divided in four lanes, two of them 0 / 0: FE_INVALID.
+    let over = |value: R, divisor: R| black_box(value / divisor);
     let size = a.abs().max(b.abs());
-    let (a, b) = (a / size, b / size);
+    let (a, b) = (over(a, size), over(b, size));
     let length = (a * a + b * b).sqrt();
-    (a / length, b / length, length * size)
+    (over(a, length), over(b, length), length * size)
 }

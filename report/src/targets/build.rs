@@ -28,11 +28,8 @@ pub(crate) fn folder(platform: &Platform) -> PathBuf {
 }
 
 /// tests/package/subproject, a CMake project that compiles the library as a part of itself, and its programs run there;
-/// or not, if there is no toolchain file for the target.
-pub(crate) fn consumer(platform: &Platform) -> Result<bool> {
-    if !platform.triple.starts_with("aarch64") {
-        return Ok(false);
-    }
+/// by a toolchain file.
+pub(crate) fn consumer(platform: &Platform, toolchain: &str) -> Result<()> {
     let (root, project) = (paths::root(), paths::output().join("test/cross-compiled project"));
     if project.exists() {
         fs::remove_dir_all(&project).with_context(|| format!("cannot remove {}", project.display()))?;
@@ -44,14 +41,14 @@ pub(crate) fn consumer(platform: &Platform) -> Result<bool> {
         format!("-DNOISEFLOOR_CARGO_TARGET_DIR={}", folder(platform).display()),
         format!("-DNOISEFLOOR_CARGO_OPTIONS={}", BUILD_CORE.join(";")),
         // CMake takes a relative path for one in the build folder.
-        format!("-DCMAKE_TOOLCHAIN_FILE={}", root.join("tests/package/aarch64.cmake").display()),
+        format!("-DCMAKE_TOOLCHAIN_FILE={}", root.join(toolchain).display()),
     ]);
     run::read(&mut configure)?;
     let mut compile = run::command("cmake");
     run::read(run::with_debians(compile.arg("--build").arg(&project).args(["--parallel", "2"])))?;
-    let mut test = run::command("ctest");
+    let mut test = platform.emulated("ctest");
     test.arg("--test-dir").arg(&project).args(["--quiet", "--output-on-failure", "--no-tests=error"]);
     run::check(&mut test)?;
     println!("   a CMake project with a toolchain file: shared and static under {}", platform.emulator);
-    Ok(true)
+    Ok(())
 }

@@ -1,5 +1,5 @@
-//! `cargo xtask targets`: the library on other processors, with and without an operating system, run under QEMU; and
-//! its size there.
+//! `cargo xtask targets`: the library on other processors, with and without an operating system, run under QEMU or Wine;
+//! and its size there.
 
 mod bare_metal;
 mod build;
@@ -69,7 +69,8 @@ fn write(tables: &[Table]) -> Result<()> {
 /// Builds, runs what can be run, and measures.
 fn one(platform: &Platform, all: &Targets, ran: &mut Table, sizes: &mut Table, example: &mut Table) -> Result<()> {
     let raw = build::archive(platform)?;
-    for service in &all.services {
+    // How large code is matters where memory is scarce, which it is not on Windows.
+    for service in all.services.iter().filter(|_| !platform.is_windows()) {
         let found = sizes::measure(platform, &raw, service)?;
         // A line of variables stands there only if there are any.
         let found = sizes::KINDS.into_iter().zip(found).filter(|(kind, bytes)| *kind != "variables" || *bytes > 0);
@@ -80,7 +81,7 @@ fn one(platform: &Platform, all: &Targets, ran: &mut Table, sizes: &mut Table, e
     for (call, bytes) in calls.chain(told.image.map(|bytes| ("image".to_owned(), bytes))) {
         example.push([&platform.name, &call, &bytes.to_string()]);
     }
-    let version = run::read(run::command(&platform.emulator).arg("--version"))?;
+    let version = run::read(platform.emulate().arg("--version"))?;
     // QEMU says much more in parentheses and further lines.
     let version = version.lines().next().unwrap_or_default().split(" (").next().unwrap_or_default();
     let emulator = format!("`{}`: {version}", platform.emulator);
@@ -97,17 +98,22 @@ fn there(platform: &Platform, all: &Targets, raw: &Path) -> Result<(bare_metal::
         sizes::link(platform, raw, &all.exports, &module)?;
         return Ok((bare_metal::wasm(platform, &module)?, "the example".to_owned()));
     };
-    let archive = library::one_object(raw, &paths::output().join(platform.id()), binutils)?;
-    library::check(&archive)?;
-    println!("   no panic, no undefined symbol but mem*, only nf_* visible");
+    let archive = library::one_object(raw, &paths::output().join(platform.id()), &format!("{binutils}ar"))?;
+    library::check(&archive, (platform.board.is_some() || platform.is_windows()).then_some(raw))?;
+    println!("   no panic, no undefined symbol but mem* and the compiler's, only nf_* visible");
     if let Some(board) = &platform.board {
-        let told = bare_metal::alone(platform, board, binutils, &archive)?;
+        let told = bare_metal::alone(platform, board, binutils, raw)?;
         return Ok((told, "the example, without an operating system".to_owned()));
     }
-    let mut ran = c_tests_there(binutils, &platform.emulator, &archive)?;
-    let told = bare_metal::hosted(platform, binutils, &archive)?;
-    ran += ", the example";
-    if build::consumer(platform)? {
+    let mut ran = c_tests_there(platform, binutils, &archive)?;
+    let mut told = bare_metal::Told::default();
+    // It measures its stack by means of POSIX.
+    if !platform.is_windows() {
+        told = bare_metal::hosted(platform, binutils, &archive)?;
+        ran += ", the example";
+    }
+    if let Some(toolchain) = &platform.toolchain {
+        build::consumer(platform, toolchain)?;
         ran += ", a CMake project";
     }
     Ok((told, ran))
@@ -116,35 +122,36 @@ fn there(platform: &Platform, all: &Targets, raw: &Path) -> Result<(bare_metal::
 const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O1"];
 
 /// Compiles and runs every C test; they read the same pinned vectors as on this machine.
-fn c_tests_there(binutils: &str, emulator: &str, archive: &Path) -> Result<String> {
+fn c_tests_there(platform: &Platform, binutils: &str, archive: &Path) -> Result<String> {
     let sources = paths::of_kind("tests/c", "c")?;
     let mut options = Vec::new();
-    if binutils.starts_with("s390x") && !multiplies(binutils, emulator)? {
+    if binutils.starts_with("s390x") && !multiplies(platform, binutils)? {
         println!(
-            "   NOT RUN: a check of importance.c. This {emulator} multiplies single precision into double wrongly \
+            "   NOT RUN: a check of importance.c. This emulator multiplies single precision into double wrongly \
              (MDEBR; mended in QEMU 8.1)"
         );
         options.push("-DMDEBR_IS_WRONG");
     }
     for source in &sources {
-        let program = c_tests::output(&format!("{binutils}c_test"))?;
+        // On Windows programs are called so, and elsewhere they may be.
+        let program = c_tests::output(&format!("{binutils}c_test.exe"))?;
         let mut compiler = run::command(format!("{binutils}gcc"));
         // The tests' own arithmetic, from which they know what to expect, must be in float and not fused. Of s390x, C99
         // makes it double.
         compiler.args(["-std=c99", "-static", "-ffp-contract=off", "-fexcess-precision=fast"]);
         compiler.args(["-Iinclude", "-Itests/c"]).args(STRICT).args(&options);
         run::check(compiler.arg(source).arg(archive).args(["-lm", "-o"]).arg(&program))?;
-        run::check(run::command(emulator).arg(&program))?;
+        run::check(platform.emulate().arg(&program))?;
     }
-    println!("   {} C tests passed under {emulator}", sources.len());
+    println!("   {} C tests passed under {}", sources.len(), platform.emulator);
     let less = if options.is_empty() { "" } else { " without one check, which this emulator computes wrongly" };
     Ok(format!("{} C tests{less}", sources.len()))
 }
 
 /// Whether the emulator has the instruction that importances are squared with.
-fn multiplies(binutils: &str, emulator: &str) -> Result<bool> {
+fn multiplies(platform: &Platform, binutils: &str) -> Result<bool> {
     let program = c_tests::output("mdebr")?;
     let mut compiler = run::command(format!("{binutils}gcc"));
     run::check(compiler.args(["-O1", "-static", "-march=z10", "report/src/targets/mdebr.c", "-o"]).arg(&program))?;
-    Ok(run::command(emulator).arg(program).status().context("the emulator does not start")?.success())
+    Ok(platform.emulate().arg(program).status().context("the emulator does not start")?.success())
 }

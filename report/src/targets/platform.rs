@@ -3,8 +3,9 @@
 use crate::chapters::plan::packages;
 use anyhow::{Context, Result};
 use serde::Deserialize;
-use xtask::paths;
+use std::process::Command;
 use xtask::tools::Package;
+use xtask::{paths, run};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -26,6 +27,7 @@ pub(crate) struct Platform {
     pub(crate) name: String,
     pub(crate) binutils: Option<String>,
     pub(crate) emulator: String,
+    pub(crate) toolchain: Option<String>,
     pub(crate) opt_level: String,
     /// Without control variates in double precision.
     #[serde(default)]
@@ -63,6 +65,22 @@ impl Targets {
 impl Platform {
     pub(crate) fn is_wasm(&self) -> bool {
         self.triple.starts_with("wasm32")
+    }
+
+    pub(crate) fn is_windows(&self) -> bool {
+        self.triple.contains("windows")
+    }
+
+    /// What runs a program here.
+    pub(crate) fn emulate(&self) -> Command {
+        self.emulated(&self.emulator)
+    }
+
+    /// A program that starts the emulator. Wine keeps its idea of a Windows in a folder of its own.
+    pub(crate) fn emulated(&self, program: &str) -> Command {
+        let mut command = run::command(program);
+        command.env("WINEPREFIX", paths::output().join("wine")).env("WINEDEBUG", "-all");
+        command
     }
 
     /// The triple, and what else tells it from others of the same.

@@ -2,7 +2,7 @@
 
 use super::kernel::positive;
 use crate::Error;
-use core::num::NonZeroU128;
+use core::num::NonZeroU64;
 
 /// The two ways to an item: by the tree, and uniformly.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +40,11 @@ impl Mixture {
 
     /// The numbers of 64 bits, divided between the ways.
     pub(super) fn ways(&self) -> Ways {
-        let uniform = if self.uniform < 1.0 { (self.uniform * TWO_64) as u128 } else { 1 << 64 };
+        // In halves: what converts a number beyond 2^63 says FE_INVALID first.
+        let scaled = self.uniform * TWO_32;
+        let high = scaled as i64;
+        let both = ((high as u128) << 32) + ((scaled - high as f64) * TWO_32) as i64 as u128;
+        let uniform = if self.uniform < 1.0 { both } else { 1 << 64 };
         Ways {
             last_uniform: uniform.checked_sub(1).map(|last| last as u64),
             scales: [
@@ -86,11 +90,9 @@ impl Scale {
         // The span stretched to between 2^63 and 2^64, and n likewise, so that the factor has 62 bits however small n
         // is.
         let left = (last as u64).leading_zeros().min(63);
-        let stretched = NonZeroU128::new(span << left).unwrap_or(NonZeroU128::MAX);
         let right = n.leading_zeros().clamp(2, 64) - 2;
         // Rounded up, so that the last number is reached.
-        let factor = (u128::from(n << right) << 64) / stretched + 1;
-        let factor = factor.min(u64::MAX.into()) as u64;
+        let factor = quotient(n << right, (span << left) as u64).saturating_add(1);
         Scale { first, left, factor, right, last: n.saturating_sub(1) }
     }
 
@@ -102,4 +104,25 @@ impl Scale {
     }
 }
 
-const TWO_64: f64 = 18_446_744_073_709_551_616.0;
+/// 2^64 n / divisor, rounded down, for n below a divisor of at least 2^63; 0 stands for 2^64. In two digits of 32 bits
+/// (Knuth, The Art of Computer Programming, 4.3.1): compilers leave 128 bits to a library that not all systems have.
+fn quotient(n: u64, divisor: u64) -> u64 {
+    let Some(high) = NonZeroU64::new(divisor >> 32) else { return n };
+    let (low, mut rest, mut quotient) = (divisor & 0xffff_ffff, n, 0);
+    for _ in 0..2 {
+        // At most 2 too large, as the divisor's highest bit is set.
+        let (mut digit, mut left) = (rest / high, rest % high);
+        while left < 1 << 32 && (digit >= 1 << 32 || digit * low > left << 32) {
+            (digit, left) = (digit - 1, left + high.get());
+        }
+        rest = (rest << 32).wrapping_sub(digit.wrapping_mul(divisor));
+        quotient = (quotient << 32) + digit;
+    }
+    quotient
+}
+
+const TWO_32: f64 = 4_294_967_296.0;
+
+#[cfg(test)]
+#[path = "../../../tests/parts/mixture.rs"]
+mod tests;
