@@ -22,8 +22,8 @@ enum Command {
     Demo(demo::Options),
     /// Measure errors and times of everything, and write docs/report: chapters with their tables, plots and pictures
     Report(chapters::Options),
-    /// Build for other targets, run the C tests and a bare-metal program there under QEMU, and write
-    /// docs/report/sizes.md
+    /// Build for other targets, run the C tests and a bare-metal program there under QEMU or Wine, and
+    /// write docs/report/sizes.md
     Targets(targets::Options),
     /// A step of `cargo xtask test`
     #[command(hide = true)]

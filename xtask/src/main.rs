@@ -49,8 +49,8 @@ enum Command {
     Playground,
     /// Build the path tracer on Embree with the thesis's scenes, and print where it is
     Embree,
-    /// Build for other targets, run the C tests and a bare-metal program there under QEMU, and write
-    /// docs/report/sizes.md
+    /// Build for other targets, run the C tests and a bare-metal program there under QEMU or Wine, and
+    /// write docs/report/sizes.md
     Targets(Passed),
     /// Make the tiles in core/tiles with fsot, or check that they are what it makes
     Tiles(tiles::Options),
