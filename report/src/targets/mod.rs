@@ -1,5 +1,5 @@
-//! `cargo xtask targets`: the library on other processors, with and without an operating system, run under QEMU or Wine;
-//! and its size there.
+//! `cargo xtask targets`: the library on other processors, with and without an operating system, run under QEMU or
+//! Wine; and its size there.
 
 mod bare_metal;
 mod build;
