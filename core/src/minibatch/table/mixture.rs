@@ -103,3 +103,7 @@ impl Scale {
 }
 
 const TWO_64: f64 = 18_446_744_073_709_551_616.0;
+
+#[cfg(test)]
+#[path = "../../../tests/parts/mixture.rs"]
+mod tests;
