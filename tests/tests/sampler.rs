@@ -301,7 +301,8 @@ fn places() {
 }
 
 /// The four numbers are functions of their own: the last two are not the first two of some sample, go on where the
-/// search for their matrix ended, and are shifted by hashes of their own. By chance hardly any two are equal in 24 bits.
+/// search for their matrix ended, and are shifted by hashes of their own. By chance hardly any two of 24 bits are
+/// equal.
 #[test]
 fn numbers_have_their_own_values() {
     let bits = |s: Sampler| s.draw::<4>().map(|u| (u * 16_777_216.0) as u32);
