@@ -260,6 +260,12 @@ fn further_dimensions_are_stratified() {
 #[test]
 fn strata_of_further_dimensions_are_filled() {
     let tile = Builtin::Size128Spp16Dims2.tile().unwrap();
+    // Nor does the third number's stratum say anything about the fourth's: all 256 pairs are there.
+    let pairs = (0..128 * 128).map(|pixel| {
+        let [_, _, third, fourth] = Sampler::pixel(&tile, pixel % 128, pixel / 128, 0, 0).domain(3).draw();
+        [third, fourth].map(|u: f32| (u * 16.0) as u32)
+    });
+    assert_eq!(pairs.collect::<HashSet<_>>().len(), 256);
     for dim in [2, 3] {
         let (mut counts, mut alike) = ([[0_u32; 4]; 16], 0);
         for (x, y) in (0..128).flat_map(|y| (0..128).map(move |x| (x, y))) {
@@ -307,6 +313,19 @@ fn seed_zero_scrambles_nothing() {
     assert_eq!(sampler.scramble(0), sampler);
     assert_ne!(sampler.scramble(1).draw::<2>(), sampler.draw());
     assert_ne!(sampler.scramble(1).draw::<2>(), sampler.scramble(2).draw());
+}
+
+/// A scrambled sampler shifts each number by a hash of its own, those beyond the tile's dims, too: of a tile whose
+/// values are all the same, differences of two numbers are hardly ever equal for two seeds.
+#[test]
+fn shifts_are_of_each_number() {
+    let bytes = file(Shape { dims: 2, ..SHAPE }, |_, _, _, _| 0.0);
+    let tile = Tile::from_bytes(&bytes).unwrap();
+    let points: Vec<_> = (1..=256).map(|seed| Sampler::pixel(&tile, 1, 2, 0, 3).scramble(seed).draw::<4>()).collect();
+    for (a, b) in (0..4).flat_map(|a| (0..a).map(move |b| (a, b))) {
+        let differences = points.iter().map(|u| ((u[a] - u[b]).rem_euclid(1.0) * 65_536.0) as u32 % 16_384);
+        assert!(differences.collect::<HashSet<_>>().len() > 240, "{a}, {b}");
+    }
 }
 
 #[test]
