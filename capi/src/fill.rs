@@ -20,9 +20,6 @@ pub(crate) unsafe fn fill<'a, T: 'a, S: PixelSampler>(
         let domains = samplers.iter().map(of).zip(dims.iter().map(|&dims| dims as usize));
         let [width, height, samples] = sizes.map(|size| size as usize);
         let needed = sampler::fill_len(domains.clone(), width, height, samples).ok_or(NF_ERR_RANGE)?;
-        if needed == 0 {
-            return Ok(());
-        }
         ensure(len >= needed, NF_ERR_MEMORY)?;
         // SAFETY: the caller passes room for `len` numbers, which are no fewer.
         let u = unsafe { convert::outputs(u, needed) }?;

@@ -84,10 +84,6 @@ pub fn fill<S: PixelSampler>(
 ) -> Result<(), Error> {
     let domains = domains.into_iter();
     let len = fill_len(domains.clone(), width, height, samples).ok_or(Error::Range)?;
-    // Without domains or samples, as many places as there may be have nothing to draw.
-    if len == 0 {
-        return Ok(());
-    }
     let u = u.get_mut(..len).ok_or(Error::Memory)?;
     let sample = domains.clone().map(|domain| domain.borrow().1).fold(0, usize::wrapping_add);
     let pixels = u.chunks_exact_mut(sample.wrapping_mul(samples).max(1));

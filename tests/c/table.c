@@ -130,10 +130,11 @@ static void errors(void)
     nf_table table, before_struct, *odd = (nf_table *)misaligned(&table);
     memory m = make(&table, ITEMS, mixed), before = memory_new(m.bytes);
     nf_rng rng, before_rng;
-    uint32_t index[4] = {0, 1, 2, 3}, out[4], k;
-    float weight[4], value[4] = {1.0f, 2.0f, 3.0f, 4.0f};
+    uint32_t index[4] = {0, 1, 2, 3}, many[65] = {0}, out[4], k;
+    float weight[4], room[65], value[4] = {1.0f, 2.0f, 3.0f, 4.0f};
     const float nan = not_a_number(), infinite = infinity_f();
     nf_rng_seed(&rng, 1);
+    many[64] = ITEMS;
     before_rng = rng;
     before_struct = table;
     memcpy(before.start, m.start, m.bytes);
@@ -165,6 +166,8 @@ static void errors(void)
     index[3] = ITEMS;
     CHECK_STATUS(nf_table_update(&table, index, value, 4, 0.0f), NF_ERR_RANGE);
     CHECK_REFUSED(nf_table_probabilities(&table, index, 4, 1, weight), NF_ERR_RANGE, weight);
+    /* The last of more than are computed at a time. */
+    CHECK_REFUSED(nf_table_probabilities(&table, many, 65, 1, room), NF_ERR_RANGE, room);
     index[3] = UINT32_MAX;
     CHECK_STATUS(nf_table_update(&table, index, value, 4, 0.0f), NF_ERR_RANGE);
     CHECK_REFUSED(nf_table_probabilities(&table, index, 4, 1, weight), NF_ERR_RANGE, weight);
@@ -230,6 +233,9 @@ static void checked(void)
     CHECK_NAMED(NF_CHECK_TABLE, &table, "uniform_fraction must be 0 to 1");
     table.uniform_fraction = 0.0f;
     CHECK_NAMED(NF_CHECK_TABLE, &table, NULL);
+    table.magic ^= 1;
+    CHECK_NAMED(NF_CHECK_TABLE, &table, "as nf_table_init() made them");
+    table.magic ^= 1;
     table.items = 0;
     CHECK_NAMED(NF_CHECK_TABLE, &table, "as nf_table_init() made them");
     table.items = 33;
@@ -323,6 +329,11 @@ static void saving(void)
     /* Of any alignment. */
     CHECK_STATUS(nf_table_save(&table, misaligned(changed.start), len), NF_OK);
     CHECK(memcmp(saved.start, misaligned(changed.start), len) == 0);
+    /* A zero has no sign. */
+    table.uniform_fraction = -0.0f;
+    CHECK_STATUS(nf_table_save(&table, misaligned(changed.start), len), NF_OK);
+    CHECK(memcmp((const char *)misaligned(changed.start) + 24, "\0\0\0", 4) == 0);
+    table.uniform_fraction = 0.3f;
 
     CHECK_STATUS(nf_table_load(NULL, m2.start, m2.bytes, saved.start, len), NF_ERR_NULL);
     CHECK_REFUSED(nf_table_load(&loaded, NULL, m2.bytes, saved.start, len), NF_ERR_NULL, loaded);
@@ -407,6 +418,8 @@ static void shuffling(void)
     CHECK_STATUS(nf_shuffle(7, 10, 0, 13, order), NF_OK);
     CHECK(order[0] < 10 && order[0] != order[1] && memcmp(order, order + 10, 3 * sizeof *order) == 0);
     CHECK_STATUS(nf_shuffle(7, 10, UINT64_MAX / 10 * 10 + 2, 4, again), NF_OK);
+    CHECK(memcmp(order + 2, again, sizeof again) == 0);
+    CHECK_STATUS(nf_shuffle(7, 10, 70000000002u, 4, again), NF_OK);
     CHECK(memcmp(order + 2, again, sizeof again) == 0);
     CHECK_REFUSED(nf_shuffle(7, 0, 3, 4, again), NF_ERR_RANGE, again);
     CHECK_STATUS(nf_shuffle(7, 9, 3, 4, NULL), NF_ERR_NULL);

@@ -9,6 +9,7 @@ use noisefloor::basis::Family;
 use noisefloor::control_variate::{
     self, Config, Estimate, Estimator, NonFinite, Optimizer, Regressor, Ridge, Samples, Solver,
 };
+use noisefloor::real::Real;
 use noisefloor_tests::ESTIMATORS;
 use noisefloor_tests::oracle::{Regression, RobustRule};
 use noisefloor_tests::random::SplitMix64;
@@ -520,6 +521,39 @@ fn skipping_all_or_all_but_one() {
     }
 }
 
+/// Control functions and their integrals that are missing, too many or no numbers, and coordinates too many.
+#[test]
+fn control_functions_must_match() {
+    let mut rng = SplitMix64::new(33);
+    let (u, h) = (points(12, 2, &mut rng), points(24, 1, &mut rng));
+    let f = values(&u, 2, smooth);
+    for estimator in ESTIMATORS {
+        let config = Config { controls: 2, ..config(2, 1, estimator) };
+        let run = |config: &Config, u: &[f32], controls: &[f32], control_integrals: &[f32]| {
+            batch_of::<f64>(config, Samples { u, f: &f, controls, control_integrals }).map(|estimate| estimate.samples)
+        };
+        let integrals = [0.5; 2];
+        assert_eq!(run(&config, &u, &h, &integrals), Ok(12));
+        let longer = [&h[..], &[0.5]].concat();
+        for h in [&[], &h[..23], &h[..12], &longer] {
+            assert_eq!(run(&config, &u, h, &integrals), Err(Error::Range), "{}", h.len());
+        }
+        for integrals in [&[][..], &[0.5], &[0.5; 3]] {
+            assert_eq!(run(&config, &u, &h, integrals), Err(Error::Range));
+        }
+        assert_eq!(run(&config, &[&u[..], &[0.5]].concat(), &h, &integrals), Err(Error::Range));
+        let skip = Config { non_finite: NonFinite::Skip, ..config };
+        for bad in [f32::NAN, f32::INFINITY] {
+            assert_eq!(run(&config, &u, &h, &[0.5, bad]), Err(Error::NotFinite));
+            assert_eq!(run(&skip, &u, &h, &[0.5, bad]), Err(Error::NotFinite));
+            let mut h = h.clone();
+            h[7] = bad;
+            assert_eq!(run(&config, &u, &h, &integrals), Err(Error::NotFinite));
+            assert_eq!(run(&skip, &u, &h, &integrals), Ok(11));
+        }
+    }
+}
+
 /// Coordinates: 0, -0 and 1 are in range, the next numbers outside are not.
 #[test]
 fn borders() {
@@ -589,6 +623,50 @@ fn few_merged_samples_have_an_error() {
             }
         }
     }
+}
+
+/// What is merged into nothing is as it was, to the bit, also where values differ by little from what they have in
+/// common.
+#[test]
+fn merging_into_nothing_is_copying() {
+    let mut rng = SplitMix64::new(15);
+    let u = points(40, 2, &mut rng);
+    let f: Vec<f32> = values(&u, 2, smooth).iter().map(|f| 1e6 + f).collect();
+    for estimator in ESTIMATORS.into_iter().filter(|&estimator| estimator != Estimator::LeaveOneOut) {
+        for solver in [Solver::Auto, Solver::SquareRoot]
+            .into_iter()
+            .filter(|&solver| solver == Solver::Auto || estimator == Estimator::LeastSquares)
+        {
+            let config = Config { solver, ..config(2, 2, estimator) };
+            fn check<R: Real>(config: &Config, u: &[f32], f: &[f32]) {
+                let (mut part, mut merged) = (accumulator::<R>(config), accumulator::<R>(config));
+                part.add(Samples::new(u, f)).unwrap();
+                merged.merge(&part).unwrap();
+                assert_eq!(finish(&merged), finish(&part), "{config:?}");
+            }
+            check::<f64>(&config, &u, &f);
+            check::<f32>(&config, &u, &f);
+        }
+    }
+    // Of other sizes, in `f32`: as in `f64`.
+    let config = Config { solver: Solver::SquareRoot, ..config(2, 1, Estimator::LeastSquares) };
+    fn both<R: Real>(config: &Config, u: &[f32]) -> Estimate {
+        let f = values(u, 2, smooth);
+        let large: Vec<f32> = f.iter().map(|f| 1e3 * f).collect();
+        let (mut merged, mut part) = (accumulator::<R>(config), accumulator::<R>(config));
+        merged.add(Samples::new(u, &large)).unwrap();
+        part.add(Samples::new(u, &f)).unwrap();
+        merged.merge(&part).unwrap();
+        finish(&merged).unwrap()
+    }
+    let errors = [both::<f32>(&config, &u).std_error[0], both::<f64>(&config, &u).std_error[0]];
+    assert!((errors[0] / errors[1] - 1.0).abs() < 1e-3, "{errors:?}");
+    let mut part = Regressor::<2, 6, 1>::new(Family::Legendre, 2).unwrap();
+    u.as_chunks().0.iter().zip(&f).for_each(|(u, &f)| part.add(u, &[f]).unwrap());
+    let mut merged = Regressor::new(Family::Legendre, 2).unwrap();
+    merged.merge(&part).unwrap();
+    assert_eq!(merged.estimate(0.01), part.estimate(0.01));
+    assert_eq!(merged.merge(&Regressor::new(Family::Sine, 2).unwrap()), Err(Error::Mismatch));
 }
 
 /// In `f32` a stream whose first sample is an outlier or in shadow has, after 100,000 samples, added or merged one by
@@ -668,6 +746,13 @@ fn too_many_samples() {
     let stream = Config { order: 1, estimator: Estimator::Incremental, ..config };
     assert!(control_variate::workspace_len::<f32>(&stream, 1 << 22).is_ok());
     assert_eq!(control_variate::workspace_len::<f32>(&stream, (1 << 22) + 1), Err(Error::Range));
+    let mut doubled = accumulator::<f32>(&stream);
+    doubled.add(Samples::new(&[0.5], &[1.0])).unwrap();
+    let one = doubled.clone();
+    for _ in 0..22 {
+        doubled.merge(&doubled.clone()).unwrap();
+    }
+    assert_eq!((doubled.samples(), doubled.merge(&one)), (1 << 22, Err(Error::Range)));
     let zeros = vec![0.0; most + 1];
     let samples = Samples::new(&zeros, &zeros);
     assert_eq!(control_variate::estimate::<f32>(&config, samples, &mut []), Err(Error::Range));

@@ -155,6 +155,35 @@ fn elsewhere_nothing_changes() {
         let [len, more] = [config, with].map(|config| image_workspace_len(&config, &of, n).unwrap());
         assert_eq!(more > len, n > 3 && config == Config::new(2, 2, 1));
     }
+    // Nor in windows of fewer than 8 pixels.
+    for (pixels, follows) in [(7, false), (8, true)] {
+        let u = points(pixels * 4, 2, &mut rng);
+        let f = Shadow::Line.values(4, &u);
+        let [with, without] = [1, 0].map(|edges| {
+            let config = Config { edges, ..Config::new(2, 2, 1) };
+            bits(&image(&config, &Image::new(pixels, 1), Samples::new(&u, &f)).unwrap())
+        });
+        assert_eq!(with != without, follows, "{pixels}");
+    }
+}
+
+/// Which coordinates the edge is in: without polynomials those before and after them have no part in anything.
+#[test]
+fn edges_are_where_they_are_said_to_be() {
+    let mut rng = SplitMix64::new(325);
+    let u = points(PIXELS * 4, 2, &mut rng);
+    let f = Shadow::Disc.values(4, &u);
+    let expected = bits(&estimates(&Config { edges: 1, ..Config::new(2, 0, 1) }, &u, &f));
+    for first in 0..3 {
+        let place = |row: &[f32]| {
+            let mut longer: [f32; 4] = std::array::from_fn(|_| rng.uniform() as f32);
+            longer[first..first + 2].copy_from_slice(row);
+            longer
+        };
+        let longer: Vec<f32> = u.chunks(2).flat_map(place).collect();
+        let config = Config { edges: first + 1, ..Config::new(4, 0, 1) };
+        assert!(bits(&estimates(&config, &longer, &f)) == expected, "{first}");
+    }
 }
 
 /// Other coordinates, channels, frames, orders and pixels without places; values of any size.

@@ -3,7 +3,7 @@
 use crate::cv_support::{accumulator, batch, config, finish, points, streamed, values};
 use noisefloor::Error;
 use noisefloor::basis::Family;
-use noisefloor::control_variate::{Accumulator, Config, Estimate, Estimator, Regressor, Samples, Solver};
+use noisefloor::control_variate::{Accumulator, Config, Estimate, Estimator, Regressor, Ridge, Samples, Solver};
 use noisefloor::real::Real;
 use noisefloor_tests::ESTIMATORS;
 use noisefloor_tests::random::SplitMix64;
@@ -200,6 +200,32 @@ fn an_accumulator_and_its_buffer() {
     assert_eq!(state.samples(), 0);
     let config = Config { estimator: Estimator::LeaveOneOut, ..config };
     assert_eq!(Accumulator::<f64>::new(&config).err(), Some(Error::Unsupported));
+    let config = Config { estimator: Estimator::LeastSquares, ridge: Ridge::Auto, ..config };
+    assert_eq!(Accumulator::<f64>::new(&config).err(), Some(Error::Unsupported));
+}
+
+/// A merged incremental stream goes on with the fits and the trust of all parts: the next sample of a function that is
+/// fitted all but exactly counts as the integral, though it lies at the end of the range.
+#[test]
+fn merged_incremental_streams_go_on() {
+    let config = config(1, 1, Estimator::Incremental);
+    let mut rng = SplitMix64::new(51);
+    let mut merged = accumulator::<f64>(&config);
+    for parts in 1..=3 {
+        let mut part = accumulator::<f64>(&config);
+        let u = points(400, 1, &mut rng);
+        let f: Vec<f32> = u.iter().map(|u| 2.0 + 2.0 * u).collect();
+        part.add(Samples::new(&u, &f)).unwrap();
+        merged.merge(&part).unwrap();
+        let mut next = merged.clone();
+        next.add(Samples::new(&[1.0], &[4.0])).unwrap();
+        let total = |stream: &Stream<f64>| {
+            let estimate = finish(stream).unwrap();
+            f64::from(estimate.mean[0]) * f64::from(estimate.samples)
+        };
+        let value = total(&next) - total(&merged);
+        assert!((value - 3.0).abs() < 0.1, "{parts} parts: {value}");
+    }
 }
 
 /// What lies behind an accumulator's numbers in a longer buffer is somebody else's.

@@ -353,6 +353,12 @@ fn channels_are_separate() {
                 let alone = batch::<f64>(&config(2, 2, estimator), &u, &own).unwrap();
                 let what = format!("{estimator:?}, channel {channel} of {channels}");
                 let same = |a: f32, b: f32| (a - b).abs() <= 1e-6 * scale.abs();
+                // A channel that is constant has no part in the gain.
+                if channels == 1 && estimator != Estimator::KFold {
+                    let with: Vec<f32> = own.iter().flat_map(|&f| [f, 7.0]).collect();
+                    let with = batch::<f64>(&Config { channels: 2, ..together }, &u, &with).unwrap();
+                    assert!((with.gain - alone.gain).abs() <= 1e-6, "{estimator:?}: {} {}", with.gain, alone.gain);
+                }
                 assert!(same(all.mean[channel], alone.mean[0]), "{what}");
                 assert!(same(all.std_error[channel], alone.std_error[0]), "{what}");
                 if let Some(all) = &all_streamed {
@@ -391,6 +397,33 @@ fn luminance_ratio() {
     }
 }
 
+/// Of merged streams, and of those samples alone that are not skipped.
+#[test]
+fn luminance_ratio_of_parts() {
+    let (u, red) = noisy(48, 2, 951);
+    let rgb: Vec<f32> = red.iter().enumerate().flat_map(|(i, &f)| [2.0 + f, 1.0, (i / 12) as f32]).collect();
+    let base = config(2, 2, Estimator::LeastSquares);
+    let config = Config { channels: 3, color: Color::LuminanceRatio, non_finite: NonFinite::Skip, ..base };
+    let expected = batch::<f64>(&config, &u, &rgb).unwrap();
+    let check = |estimate: Estimate| {
+        for channel in 0..3 {
+            let error = (estimate.mean[channel] - expected.mean[channel]).abs();
+            assert!(error < 1e-5 * expected.mean[0], "{estimate:?}, not {expected:?}");
+        }
+    };
+    let mut parts = [accumulator::<f64>(&config), accumulator(&config)];
+    parts[0].add(Samples::new(&u[..40], &rgb[..60])).unwrap();
+    parts[1].add(Samples::new(&u[40..], &rgb[60..])).unwrap();
+    let [mut merged, rest] = parts;
+    merged.merge(&rest).unwrap();
+    check(finish(&merged).unwrap());
+    let (mut bad_u, mut bad_rgb) = (u.clone(), rgb.clone());
+    bad_u.splice(20..20, [0.5; 20]);
+    bad_rgb.splice(30..30, [9.0, f32::NAN, 9.0].into_iter().cycle().take(30));
+    check(batch::<f64>(&config, &bad_u, &bad_rgb).unwrap());
+    check(streamed::<f64>(&config, &bad_u, &bad_rgb).unwrap());
+}
+
 /// The error that one sample leaves unknown is so in a channel of value 0, too.
 #[test]
 fn luminance_ratio_of_one_sample() {
@@ -412,6 +445,10 @@ fn luminance_ratio_of_values_that_cancel() {
         let estimate = batch::<f64>(&config, &u, &f).unwrap();
         assert_eq!((estimate.mean[..3].to_vec(), estimate.std_error[..3].to_vec()), (vec![0.0; 3], vec![error; 3]));
     }
+    // The luminances cancel, the colours do not: their mean is all that is known.
+    let f: Vec<f32> = (0..8).flat_map(|i| if i % 2 == 0 { [7.152, 0.0, 0.0] } else { [0.0, -2.126, 0.0] }).collect();
+    let estimate = batch::<f64>(&config, &u, &f).unwrap();
+    assert_eq!(estimate.mean[..3], [3.576, -1.063, 0.0]);
 }
 
 /// Skipping leaves the estimate of the others, to rounding, wherever the bad samples are.

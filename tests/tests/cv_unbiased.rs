@@ -264,6 +264,28 @@ fn standard_errors_are_calibrated() {
     }
 }
 
+/// Of least squares where samples lie in the lower half alone, so that the estimate is four times as uncertain as among
+/// as many that lie evenly: the errors of a line in noise are told as such. 4,000 repetitions know the ratio within 5 %
+/// (95 %).
+#[test]
+fn least_squares_knows_where_samples_lie() {
+    let u: Vec<f32> = (0..16).map(|i| (i as f32 + 0.5) / 32.0).collect();
+    for (solver, streaming) in [(Solver::Auto, false), (Solver::Auto, true), (Solver::SquareRoot, true)] {
+        let config = Config { solver, ..config(1, 1, Estimator::LeastSquares) };
+        let (mut square, mut error, mut rng) = (0.0, 0.0, SplitMix64::new(97));
+        for _ in 0..4000 {
+            let f: Vec<f32> = u.iter().map(|u| 4.0 * u + rng.normal() as f32).collect();
+            let estimate = if streaming { streamed::<f64>(&config, &u, &f) } else { batch::<f64>(&config, &u, &f) };
+            let estimate = estimate.unwrap();
+            square += f64::from(estimate.std_error[0]).powi(2);
+            error += (f64::from(estimate.mean[0]) - 2.0).powi(2);
+        }
+        let ratio = square / error;
+        assert!((0.9..1.4).contains(&ratio), "{solver:?} {streaming}: {ratio}");
+        println!("{solver:?} {streaming}: {ratio:.3}");
+    }
+}
+
 /// Two standard errors around the estimate hold the integral about as often as around the plain mean of the same
 /// samples: of all integrands, orders and counts at most one in twenty is .055 below, none .13. 1,000 repetitions know
 /// a share within .02 (95 %). Rare bright samples, which a fit sees as seldom as the mean, are left out.

@@ -2,6 +2,7 @@
 
 use noisefloor::minibatch::shuffle;
 use noisefloor_tests::statistics::{chi_square, wilson_hilferty};
+use std::collections::HashSet;
 
 #[test]
 fn every_element_once() {
@@ -27,6 +28,14 @@ fn positions_wrap_around() {
     assert_eq!(shuffle(1, 0, 5), 0);
     assert_eq!(shuffle(3, 10, 13), shuffle(3, 10, 3));
     assert!(shuffle(9, u32::MAX, u32::MAX - 1) < u32::MAX);
+}
+
+/// Each bit of the seed makes another order.
+#[test]
+fn seeds_have_all_their_bits() {
+    let order = |seed| (0..60).map(|position| shuffle(seed, 60, position)).collect::<Vec<u32>>();
+    let orders: HashSet<Vec<u32>> = (0..64).map(|bit| order(1 << bit)).chain([order(0)]).collect();
+    assert_eq!(orders.len(), 65);
 }
 
 /// Each element at each position equally often, over 100,000 seeds; the rows and columns of counts have fixed sums, so

@@ -53,26 +53,35 @@ fn updates_in_order() {
     assert_eq!(table.importance(2), 8.0);
     table.update(&[2], &[1.0], 1.0).unwrap();
     assert_eq!(table.importance(2), 8.0);
-    table.update(&[0, 0], &[f32::MAX; 2], 0.5).unwrap();
-    assert!(table.importance(0).is_finite());
+    for momentum in 0..100 {
+        table.update(&[0, 0], &[f32::MAX; 2], momentum as f32 / 100.0).unwrap();
+        assert!(table.importance(0).is_finite(), "{momentum}");
+    }
     table.update(&[], &[], 0.5).unwrap();
 }
 
 /// Sums beyond the range of their integers that would wrap around to numbers within it: five blocks of .9 times the
-/// range.
+/// range, also among the first of more changes than go up the tree together.
 #[test]
 fn sums_do_not_wrap_around() {
-    let (items, range) = (80, 2f32.powi(18));
-    for way in 0..3 {
-        let (q, sums) = memory(96);
+    for (way, items) in [80, 80, 80, 80, 2048].into_iter().enumerate() {
+        let (q, sums) = memory(items + 144);
         let mut grown = Table::new(q, sums, items, None).unwrap();
         grown.set_uniform_fraction(0.0).unwrap();
-        assert_eq!(grown.state().scale, 2f64.powi(44));
-        let index = [0, 16, 32, 48, 64];
+        let range = (2f64.powi(62) / grown.state().scale) as f32;
+        let index = [&[0, 16, 32, 48, 64], &[1; 60][..]].concat();
+        let importance = [&[0.9 * range; 5], &[1.0; 60][..]].concat();
         match way {
-            0 => grown.update(&index, &[0.9 * range; 5], 0.0).unwrap(),
-            1 => grown.add_epsilon(0.9 * range / 16.0).unwrap(),
-            _ => grown.append(&[f32::MAX; 4]).unwrap(),
+            0 => grown.update(&index[..5], &importance[..5], 0.0).unwrap(),
+            1 => grown.update(&index, &importance, 0.0).unwrap(),
+            2 => grown.add_epsilon(0.9 * range / 16.0).unwrap(),
+            3 => grown.append(&[f32::MAX; 4]).unwrap(),
+            _ => {
+                let large = |item: usize| item < 80 && item.is_multiple_of(16);
+                let added: Vec<f32> = (0..90).map(|item| if large(item) { 0.9 * range } else { item as f32 }).collect();
+                grown.append(&added).unwrap();
+                assert!((0..90).all(|item| grown.importance(items + item) == added[item as usize]));
+            }
         }
         let sum: f64 = (0..grown.items()).map(|item| f64::from(grown.importance(item))).sum();
         assert!((grown.total() / sum - 1.0).abs() < 1e-9, "{way}: {} {sum}", grown.total());
@@ -185,7 +194,7 @@ fn bad_input_is_refused() {
     assert_eq!(table.add_epsilon(-1.0), Err(Error::Range));
     assert_eq!(table.append(&[1.0, -1.0]), Err(Error::Range));
     assert_eq!(table.append(&[1.0; 13]), Err(Error::Memory));
-    assert_eq!(table.save(&mut [0; 5]), Err(Error::Length));
+    assert_eq!((table.save(&mut [0; 5]), table.save(&mut [0; 49])), (Err(Error::Length), Err(Error::Length)));
     assert_eq!((index, weight, p), ([7; 4], [7.0; 4], [7.0; 4]));
     assert_eq!(rng, Rng::seed(5));
     assert!(saved(&table) == before);
@@ -282,6 +291,22 @@ fn damaged_bytes_are_refused() {
     assert_eq!((saved_items(&good[..15]), saved_items(b"PK\x03\x04")), (Err(Error::Length), Err(Error::Foreign)));
     // No library has written version 0, as after bit 64, nor a table of no items.
     assert_eq!(load(&[&good[..12], &[0; 4], &good[16..]].concat()), Err(Error::Corrupt));
+    // Nor fields that make no sense, though the checksum is right: scales, fractions, importances.
+    assert_eq!(load(&sealed(good.clone())), Ok(40));
+    let doubles = [(16, 1.5), (16, -1.0), (16, 0.0), (16, f64::NAN)].map(|(at, x): (usize, f64)| (at, x.to_bits(), 8));
+    let floats = [(24, 1.5), (24, f32::NAN), (32, -1.0), (36, -0.0), (40, f32::NAN), (44, f32::INFINITY)];
+    for (at, bits, len) in doubles.into_iter().chain(floats.map(|(at, x): (usize, f32)| (at, x.to_bits().into(), 4))) {
+        let mut bytes = good.clone();
+        bytes[at..at + len].copy_from_slice(&bits.to_le_bytes()[..len]);
+        assert_eq!(load(&sealed(bytes)), Err(Error::Corrupt), "byte {at}: {bits:x}");
+    }
+}
+
+/// Puts the checksum right after a deliberate change.
+fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let checksum = crc(bytes[..28].iter().chain(&bytes[32..]).copied());
+    bytes[28..32].copy_from_slice(&checksum.to_le_bytes());
+    bytes
 }
 
 /// Bytes that are whole, at a scale that a table of these importances never has: it draws the same, all the same.
@@ -291,8 +316,7 @@ fn another_scale_loses_nothing() {
     let mut bytes = saved(&table(&importance, 0.2));
     for scale in [2f64.powi(-300), 1.0, 2f64.powi(300)] {
         bytes[16..24].copy_from_slice(&scale.to_le_bytes());
-        let checksum = crc(bytes[..28].iter().chain(&bytes[32..]).copied());
-        bytes[28..32].copy_from_slice(&checksum.to_le_bytes());
+        bytes = sealed(bytes);
         let (q, sums) = memory(32);
         let table = Table::load(q, sums, &bytes).unwrap();
         let p = [0, 31].map(|item| f64::from(table.probability(item)));
@@ -306,7 +330,10 @@ fn another_scale_loses_nothing() {
 fn zeros_have_no_sign() {
     let mut table = table(&[1.0, 2.0, 3.0], 0.2);
     table.update(&[0, 1], &[-0.0, -0.0], -0.0).unwrap();
-    assert!(table.importance(0).is_sign_positive() && table.importance(1).is_sign_positive());
+    table.set_uniform_fraction(-0.0).unwrap();
+    let signed = [table.importance(0), table.importance(1), table.state().uniform_fraction];
+    assert!(signed.iter().all(|zero| zero.is_sign_positive()), "{signed:?}");
+    table.set_uniform_fraction(0.2).unwrap();
     let loaded = Borrowed::load(&mut [0.0; 16], &mut [0; 16], &saved(&table)).map(|table| table.items());
     assert_eq!(loaded, Ok(3));
     let mut index = [0; 3];
@@ -325,6 +352,23 @@ fn memory_need_not_match() {
     assert_eq!(made(2000, sums), Ok(1024));
     assert_eq!(made(importance, 4000), Ok(1008));
     assert_eq!(made(importance, sums - 1), Err(Error::Memory));
+    // What lies in more memory than there are sums for is no item's.
+    let mut longer = [[1.0; 16], [5.0; 16]].concat();
+    let state = Borrowed::new(&mut longer[..16], &mut [0; 16], 16, None).unwrap().state();
+    assert_eq!(Table::resume(&longer[..], &[0; 16][..], state).unwrap().importance(20), 0.0);
+}
+
+/// An item or a child of no weight holds no number, not even where others end; the kernels of processors compare with
+/// these.
+#[test]
+fn borders_belong_to_what_has_weight() {
+    let mut q = [0.0; 16];
+    (q[3], q[4], q[9]) = (1.0, 2.0, 5.0);
+    for (u, item) in [(0.0, 4), (0.249, 4), (0.25, 9), (0.874, 9), (0.875, 3), (0.999, 3)] {
+        assert_eq!(Portable::find_item(&q, u), (item, 8.0), "{u}");
+    }
+    let node = [0, 0, 2, 2, 5, 5, 5, 9, 9, 9, 9, 9, 9, 9, 9, 9];
+    assert_eq!([0, 1, 2, 4, 5, 8].map(|r| Portable::find_child(&node, r)), [2, 2, 4, 4, 7, 7]);
 }
 
 /// A kernel that is named is the one that a table has from the start.

@@ -3,7 +3,7 @@
 //! Seeds are fixed. Each test states the probability that it fails by chance.
 
 use noisefloor::Error;
-use noisefloor::sampler::{Sampler, fill, table};
+use noisefloor::sampler::{Sampler, fill, fill_len, table};
 use noisefloor_tests::planar::{Blur, Planar};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::statistics::Moments;
@@ -275,6 +275,13 @@ fn filled_at_once() {
     assert_eq!(fill(samplers, usize::MAX, 3, 5, &mut u), Err(Error::Range));
     assert_eq!(fill([samplers[0]; 0], usize::MAX, usize::MAX, 1, &mut u), Err(Error::Range));
     assert_eq!(fill(samplers, 0, 3, 5, &mut []), Ok(()));
+    assert_eq!(fill(samplers, usize::MAX, 1, 0, &mut []), Ok(()));
+    assert_eq!(fill_len([(root(0), 1)], isize::MAX as usize, 1, 1), None);
+    // A stride of less than the numbers is as many.
+    let (mut u, mut dense) = ([-1.0; 31], [-1.0; 31]);
+    root(3).draw_samples(3, 1, &mut u);
+    root(3).draw_samples(3, 3, &mut dense);
+    assert_eq!(u, dense);
 }
 
 /// The table repeats; other pixels, frames, samples, domains, kinds and seeds draw other numbers.
@@ -285,9 +292,34 @@ fn places() {
     assert_eq!((s.draw::<3>(), s), (far.draw(), s.scramble(0)));
     let [pixel, frame, sample] = [Sampler::pixel(4, 5, 0, 1), Sampler::pixel(3, 5, 1, 1), Sampler::pixel(3, 5, 0, 5)];
     let domains = [s.domain(0), s.domain(1).domain(2), s.domain(2).domain(1)];
-    let all = [&[s, pixel, frame, sample, Sampler::white(3, 5, 0, 1), s.scramble(1)][..], &domains].concat();
+    let white = Sampler::white(3, 5, 0, 1);
+    let all = [&[s, pixel, frame, sample, white, s.scramble(1), white.scramble(1)][..], &domains].concat();
     let drawn: HashSet<_> = all.iter().map(|s| s.draw::<3>().map(f32::to_bits)).collect();
     assert_eq!(drawn.len(), all.len());
+    // Of the same number, a frame, a seed and a key are three domains.
+    assert_eq!(HashSet::from([frame, s.scramble(1), s.domain(1)].map(|s| s.domain)).len(), 3);
+}
+
+/// The four numbers are functions of their own: the last two are not the first two of some sample, go on where the
+/// search for their matrix ended, and are shifted by hashes of their own. By chance hardly any two of 24 bits are
+/// equal.
+#[test]
+fn numbers_have_their_own_values() {
+    let bits = |s: Sampler| s.draw::<4>().map(|u| (u * 16_777_216.0) as u32);
+    let equal = (0..PIXELS).map(|pixel| bits(root(pixel))).filter(|[a, b, c, d]| a == c || b == d).count();
+    assert!(equal < 3, "{equal}");
+    for axis in 0..4 {
+        let values: HashSet<u32> = (0..4096).map(|i| bits(root(9).moved(0, 0, i))[axis]).collect();
+        assert!(values.len() > 4080, "{axis}: {}", values.len());
+        // Below the leading 16 bits, too, values lie anywhere.
+        let fine: HashSet<u32> = (0..PIXELS).map(|pixel| bits(root(pixel))[axis] & 255).collect();
+        assert!(fine.len() > 200, "{axis}: {}", fine.len());
+    }
+    let differences: [HashSet<u32>; 3] = [1, 2, 3].map(|axis| {
+        let bits = (1..=20_000).map(|seed| bits(root(9).scramble(seed)));
+        bits.map(|bits| bits[axis].wrapping_sub(bits[0]) & 0xff_ffff).collect()
+    });
+    assert!(differences.iter().all(|all| all.len() > 19_900), "{:?}", differences.map(|all| all.len()));
 }
 
 /// The first two samples of pixels 32 apart are the same numbers in all domains, later ones are not; white pixels share

@@ -41,6 +41,7 @@ fn layout() {
     assert_eq!((tile.shape(), tile.payload()), (SHAPE, &payload[..]));
     assert_eq!((Tile::new(SHAPE, &payload), Tile::resume(SHAPE, &payload)), (Ok(tile), tile));
     assert_eq!(Tile::new(SHAPE, &payload[1..]), Err(Error::Length));
+    assert_eq!(Tile::new(SHAPE, &all), Err(Error::Length));
     assert_eq!(Tile::new(Shape { spp: 3, ..SHAPE }, &payload), Err(Error::Range));
 }
 

@@ -192,18 +192,28 @@ fn samples_of_a_pixel_give_the_same_bits() {
             Sampler::pixel(&tile, 0, 0, 0, 0).draw_samples(dims, 5, &mut u);
         }
         assert_eq!(u, [-1.0; 9]);
+        // A stride of less than the dims is as many.
+        let (mut u, mut dense) = ([-1.0; 31], [-1.0; 31]);
+        Sampler::pixel(&tile, 1, 2, 0, 0).draw_samples(3, 1, &mut u);
+        Sampler::pixel(&tile, 1, 2, 0, 0).draw_samples(3, 3, &mut dense);
+        assert_eq!(u, dense);
     }
 }
 
-/// Other frames, samples, domains and seeds draw other numbers; domains in another order, too.
+/// Other frames, beyond the tile's, too, samples, domains and seeds draw other numbers; domains in another order, too.
 #[test]
 fn places_differ() {
-    let bytes = noise(SHAPE, 2);
-    let tile = Tile::from_bytes(&bytes).unwrap();
-    let s = Sampler::pixel(&tile, 3, 5, 0, 1);
-    let [frame, sample] = [Sampler::pixel(&tile, 3, 5, 1, 1), Sampler::pixel(&tile, 3, 5, 0, 5)];
-    let all = [s, frame, sample, s.domain(0), s.scramble(1), s.domain(1).domain(2), s.domain(2).domain(1)];
-    assert_eq!(HashSet::from(all.map(|s| s.draw::<3>().map(f32::to_bits))).len(), all.len());
+    for frames in [1, 2] {
+        let bytes = noise(Shape { frames, ..SHAPE }, 2);
+        let tile = Tile::from_bytes(&bytes).unwrap();
+        let s = Sampler::pixel(&tile, 3, 5, 0, 1);
+        let frame = |frame| Sampler::pixel(&tile, 3, 5, frame, 1);
+        let [sample, chains] = [Sampler::pixel(&tile, 3, 5, 0, 5), s.domain(1).domain(2)];
+        let all = [s, frame(1), frame(2), frame(3), sample, s.domain(0), s.scramble(1), chains, s.domain(2).domain(1)];
+        assert_eq!(HashSet::from(all.map(|s| s.draw::<3>().map(f32::to_bits))).len(), all.len());
+        // Of the same number, a cycle of frames, a seed and a key are three domains.
+        assert_eq!(HashSet::from([frame(frames), s.scramble(1), s.domain(1)].map(|s| s.domain)).len(), 3);
+    }
 }
 
 /// Beyond the tile's dims come other places of the tile, not repetitions.
@@ -245,6 +255,34 @@ fn further_dimensions_are_stratified() {
     }
 }
 
+/// Of the same tile: within each stratum further numbers lie anywhere, over the pixels no quarter of it is shunned, and
+/// a pixel's samples do not lie alike in theirs.
+#[test]
+fn strata_of_further_dimensions_are_filled() {
+    let tile = Builtin::Size128Spp16Dims2.tile().unwrap();
+    // Nor does the third number's stratum say anything about the fourth's: all 256 pairs are there.
+    let pairs = (0..128 * 128).map(|pixel| {
+        let [_, _, third, fourth] = Sampler::pixel(&tile, pixel % 128, pixel / 128, 0, 0).domain(3).draw();
+        [third, fourth].map(|u: f32| (u * 16.0) as u32)
+    });
+    assert_eq!(pairs.collect::<HashSet<_>>().len(), 256);
+    for dim in [2, 3] {
+        let (mut counts, mut alike) = ([[0_u32; 4]; 16], 0);
+        for (x, y) in (0..128).flat_map(|y| (0..128).map(move |x| (x, y))) {
+            let within: [f32; 16] = std::array::from_fn(|index| {
+                let value = Sampler::pixel(&tile, x, y, 0, index as u32).domain(3).draw::<4>()[dim] * 16.0;
+                counts[value as usize][(value.fract() * 4.0) as usize] += 1;
+                value.fract()
+            });
+            alike += u32::from((within[0] - within[1]).abs() < 1.0 / 64.0);
+        }
+        // Of 4,096 each; two of uniform numbers are as near in 1 of 32 pixels, 512 of them.
+        println!("{dim}: {counts:?}, {alike} alike");
+        assert!(counts.as_flattened().iter().all(|count| (3600..4600).contains(count)), "{dim}: {counts:?}");
+        assert!(alike < 1024, "{dim}: {alike}");
+    }
+}
+
 /// By ranks among a pixel's samples, halves of the first number by eighths of the third have one each.
 #[test]
 fn a_third_dimension_makes_a_net() {
@@ -275,6 +313,19 @@ fn seed_zero_scrambles_nothing() {
     assert_eq!(sampler.scramble(0), sampler);
     assert_ne!(sampler.scramble(1).draw::<2>(), sampler.draw());
     assert_ne!(sampler.scramble(1).draw::<2>(), sampler.scramble(2).draw());
+}
+
+/// A scrambled sampler shifts each number by a hash of its own, those beyond the tile's dims, too: of a tile whose
+/// values are all the same, differences of two numbers are hardly ever equal for two seeds.
+#[test]
+fn shifts_are_of_each_number() {
+    let bytes = file(Shape { dims: 2, ..SHAPE }, |_, _, _, _| 0.0);
+    let tile = Tile::from_bytes(&bytes).unwrap();
+    let points: Vec<_> = (1..=256).map(|seed| Sampler::pixel(&tile, 1, 2, 0, 3).scramble(seed).draw::<4>()).collect();
+    for (a, b) in (0..4).flat_map(|a| (0..a).map(move |b| (a, b))) {
+        let differences = points.iter().map(|u| ((u[a] - u[b]).rem_euclid(1.0) * 65_536.0) as u32 % 16_384);
+        assert!(differences.collect::<HashSet<_>>().len() > 240, "{a}, {b}");
+    }
 }
 
 #[test]
@@ -310,6 +361,23 @@ fn what_follows_the_tile_is_a_net() {
                 }
                 assert_eq!(cells.len(), 1 << bits);
             }
+        }
+    }
+}
+
+/// The sequence that follows a tile's samples is another in every domain and dimension: of a tile whose values are all
+/// the same, which shows it alone.
+#[test]
+fn what_follows_the_tile_is_scrambled() {
+    let bytes = file(Shape { spp: 1, dims: 4, ..SHAPE }, |_, _, _, _| 0.0);
+    let tile = Tile::from_bytes(&bytes).unwrap();
+    for index in [1, 2, 5] {
+        let domains = (0..256).map(|key| Sampler::pixel(&tile, 0, 0, 0, index).domain(key).draw::<4>());
+        let points: Vec<[u32; 4]> = domains.map(|u| u.map(f32::to_bits)).collect();
+        for axis in 0..4 {
+            assert!(points.iter().map(|u| u[axis]).collect::<HashSet<_>>().len() > 250, "sample {index}, {axis}");
+            let equal = points.iter().filter(|u| u[axis] == u[(axis + 1) % 4]).count();
+            assert!(equal < 3, "sample {index}, {axis}: {equal}");
         }
     }
 }

@@ -212,6 +212,12 @@ fn edges_map_into_the_range_and_have_density() {
         let b = uniform_triangle(u);
         assert!(b.min_element() >= 0.0 && (b.x + b.y + b.z - 1.0).abs() < 2e-7, "{u}: {b}");
     }
+    // All around: rounding takes no point off the disc, and none above the horizon.
+    for turn in 0..1000 {
+        let u = Vec2::new(1.0, turn as f32 / 1000.0);
+        assert!(concentric_disc_pdf(concentric_disc(u)) > 0.0, "{u}");
+        assert_eq!(cosine_hemisphere(u).z, 0.0, "{u}");
+    }
 }
 
 #[test]
@@ -230,6 +236,7 @@ fn known_points() {
     assert_eq!(concentric_disc(Vec2::splat(0.5)), Vec2::ZERO);
     assert_eq!(concentric_disc(Vec2::new(1.0, 0.5)), Vec2::X);
     assert_eq!(concentric_disc(Vec2::new(0.5, 0.0)), Vec2::NEG_Y);
+    assert_eq!(concentric_disc_inverse(Vec2::ZERO), Vec2::splat(0.5));
     assert_eq!(uniform_hemisphere(Vec2::ZERO), Vec3::Z);
     assert_eq!(uniform_hemisphere(Vec2::X), Vec3::X);
     assert_eq!(uniform_hemisphere(Vec2::new(0.0, 0.5)), Vec3::Z);

@@ -44,7 +44,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
                 prefetch::<K, _>(self.blocks(), which);
                 prefetch::<K, _>(self.nodes(), which / CHILDREN);
             }
-            let mix = |&q: &f32| move |old: f32| (momentum * old + fresh * q + 0.0).min(f32::MAX);
+            let mix = |&q: &f32| move |old: f32| (momentum * old + fresh * q).min(f32::MAX);
             in_range &= self.change(index.iter().copied().zip(importance.iter().map(mix)));
         }
         self.restore_scale(in_range);
