@@ -24,6 +24,7 @@ mod cv_oracle;
 mod cv_ordered;
 mod cv_properties;
 mod cv_slices;
+mod cv_streams;
 mod cv_support;
 mod cv_unbiased;
 mod minibatch_importance;

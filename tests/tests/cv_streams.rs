@@ -1,0 +1,173 @@
+//! Streams of samples in hard cases: few or none, merged, in single precision, more than memory holds.
+
+use crate::cv_support::*;
+use noisefloor::Error;
+use noisefloor::basis::Family;
+use noisefloor::control_variate::{self, Config, Estimate, Estimator, Regressor, Samples, Solver};
+use noisefloor::real::Real;
+use noisefloor_tests::ESTIMATORS;
+use noisefloor_tests::random::SplitMix64;
+
+/// Few samples, each in an accumulator of its own, have a standard error above 0, also where rounding to `f32` is most
+/// of what a fit to as few says of where they lie.
+#[test]
+fn few_merged_samples_have_an_error() {
+    let mut rng = SplitMix64::new(13);
+    for n in [2, 3, 4, 8, 16] {
+        for _ in 0..500 {
+            let u = points(n, 2, &mut rng);
+            let f = values(&u, 2, smooth);
+            for estimator in [Estimator::Robust, Estimator::KFold, Estimator::LeastSquares] {
+                let config = config(2, 2, estimator);
+                let mut parts = u.chunks(2).zip(f.chunks(1)).map(|(u, f)| {
+                    let mut part = accumulator::<f32>(&config);
+                    part.add(Samples::new(u, f)).unwrap();
+                    part
+                });
+                let mut merged = parts.next().unwrap();
+                parts.for_each(|part| merged.merge(&part).unwrap());
+                let estimate = finish(&merged).unwrap();
+                assert!(estimate.std_error[0] > 0.0, "{estimator:?}, {n}: {estimate:?} of {u:?}");
+            }
+        }
+    }
+}
+
+/// What is merged into nothing is as it was, to the bit, also where values differ by little from what they have in
+/// common.
+#[test]
+fn merging_into_nothing_is_copying() {
+    let mut rng = SplitMix64::new(15);
+    let u = points(40, 2, &mut rng);
+    let f: Vec<f32> = values(&u, 2, smooth).iter().map(|f| 1e6 + f).collect();
+    for estimator in ESTIMATORS.into_iter().filter(|&estimator| estimator != Estimator::LeaveOneOut) {
+        for solver in [Solver::Auto, Solver::SquareRoot]
+            .into_iter()
+            .filter(|&solver| solver == Solver::Auto || estimator == Estimator::LeastSquares)
+        {
+            let config = Config { solver, ..config(2, 2, estimator) };
+            fn check<R: Real>(config: &Config, u: &[f32], f: &[f32]) {
+                let (mut part, mut merged) = (accumulator::<R>(config), accumulator::<R>(config));
+                part.add(Samples::new(u, f)).unwrap();
+                merged.merge(&part).unwrap();
+                assert_eq!(finish(&merged), finish(&part), "{config:?}");
+            }
+            check::<f64>(&config, &u, &f);
+            check::<f32>(&config, &u, &f);
+        }
+    }
+    // Of other sizes, in `f32`: as in `f64`.
+    let config = Config { solver: Solver::SquareRoot, ..config(2, 1, Estimator::LeastSquares) };
+    fn both<R: Real>(config: &Config, u: &[f32]) -> Estimate {
+        let f = values(u, 2, smooth);
+        let large: Vec<f32> = f.iter().map(|f| 1e3 * f).collect();
+        let (mut merged, mut part) = (accumulator::<R>(config), accumulator::<R>(config));
+        merged.add(Samples::new(u, &large)).unwrap();
+        part.add(Samples::new(u, &f)).unwrap();
+        merged.merge(&part).unwrap();
+        finish(&merged).unwrap()
+    }
+    let errors = [both::<f32>(&config, &u).std_error[0], both::<f64>(&config, &u).std_error[0]];
+    assert!((errors[0] / errors[1] - 1.0).abs() < 1e-3, "{errors:?}");
+    let mut part = Regressor::<2, 6, 1>::new(Family::Legendre, 2).unwrap();
+    u.as_chunks().0.iter().zip(&f).for_each(|(u, &f)| part.add(u, &[f]).unwrap());
+    let mut merged = Regressor::new(Family::Legendre, 2).unwrap();
+    merged.merge(&part).unwrap();
+    assert_eq!(merged.estimate(0.01), part.estimate(0.01));
+    assert_eq!(merged.merge(&Regressor::new(Family::Sine, 2).unwrap()), Err(Error::Mismatch));
+}
+
+/// In `f32` a stream whose first sample is an outlier or in shadow has, after 100,000 samples, added or merged one by
+/// one, the mean of `f64` within a twentieth of the standard error, which is within a tenth of that of `f64`.
+#[test]
+fn narrow_streams_forget_their_first_sample() {
+    let mut rng = SplitMix64::new(14);
+    let n = 100_000;
+    let u = points(n, 2, &mut rng);
+    for first in [1e4, 0.0] {
+        let mut f: Vec<f32> = u.chunks(2).map(|u| 0.6 + 0.1 * u[0] + 0.01 * rng.uniform_f32()).collect();
+        f[0] = first;
+        let mut configs = ESTIMATORS.map(|estimator| config(2, 1, estimator)).to_vec();
+        configs.retain(|config| config.estimator != Estimator::LeaveOneOut);
+        configs.push(Config { solver: Solver::SquareRoot, ..config(2, 1, Estimator::LeastSquares) });
+        for config in configs {
+            let wide = streamed::<f64>(&config, &u, &f).unwrap();
+            let mut merged = accumulator::<f32>(&config);
+            for (u, f) in u.chunks(2).zip(f.chunks(1)) {
+                let mut part = accumulator::<f32>(&config);
+                part.add(Samples::new(u, f)).unwrap();
+                merged.merge(&part).unwrap();
+            }
+            let added = streamed::<f32>(&config, &u, &f).unwrap();
+            for (how, narrow) in [("added", added), ("merged", finish(&merged).unwrap())] {
+                // Samples that were merged one by one are their own past: nothing corrects them.
+                if how == "merged" && config.estimator == Estimator::Incremental {
+                    continue;
+                }
+                let what =
+                    format!("{how} {:?} {:?}, {first} first: {narrow:?} for {wide:?}", config.estimator, config.solver);
+                assert!((narrow.mean[0] - wide.mean[0]).abs() < 0.05 * wide.std_error[0], "{what}");
+                assert!((narrow.std_error[0] / wide.std_error[0] - 1.0).abs() < 0.1, "{what}");
+            }
+        }
+    }
+}
+
+/// The same of samples in arrays, by every estimator. Givens rotations are those of a stream.
+#[test]
+fn narrow_batches_forget_their_first_sample() {
+    let mut rng = SplitMix64::new(15);
+    let n = 100_000;
+    let u = points(n, 2, &mut rng);
+    for first in [1e4, 0.0] {
+        let mut f: Vec<f32> = u.chunks(2).map(|u| 0.6 + 0.1 * u[0] + 0.01 * rng.uniform_f32()).collect();
+        f[0] = first;
+        for estimator in ESTIMATORS {
+            let config = config(2, 1, estimator);
+            let (wide, narrow) = (batch::<f64>(&config, &u, &f).unwrap(), batch::<f32>(&config, &u, &f).unwrap());
+            let what = format!("{estimator:?}, {first} first: {narrow:?} for {wide:?}");
+            assert!((narrow.mean[0] - wide.mean[0]).abs() < 0.05 * wide.std_error[0], "{what}");
+            assert!((narrow.std_error[0] / wide.std_error[0] - 1.0).abs() < 0.1, "{what}");
+        }
+    }
+}
+
+/// An incremental estimate of arrays takes the memory of its stream, and no more.
+#[test]
+fn memory_of_incremental_estimates() {
+    let config = config(2, 2, Estimator::Incremental);
+    let len = control_variate::workspace_len::<f64>(&config, 9).unwrap();
+    let estimate = |len| {
+        control_variate::estimate(&config, Samples::new(&[0.5; 18], &[1.0; 9]), &mut vec![f64::NAN; len]).map(drop)
+    };
+    assert_eq!((estimate(len), estimate(len - 1)), (Ok(()), Err(Error::Memory)));
+}
+
+/// More samples than sums or counts hold are refused, before any is read, and so is asking for the workspace.
+#[test]
+fn too_many_samples() {
+    let config = config(1, 0, Estimator::Robust);
+    let most = 1 << 25;
+    assert!(control_variate::workspace_len::<f32>(&config, most).is_ok());
+    assert_eq!(control_variate::workspace_len::<f32>(&config, most + 1), Err(Error::Range));
+    assert!(control_variate::workspace_len::<f64>(&config, most + 1).is_ok());
+    let stream = Config { order: 1, estimator: Estimator::Incremental, ..config };
+    assert!(control_variate::workspace_len::<f32>(&stream, 1 << 22).is_ok());
+    assert_eq!(control_variate::workspace_len::<f32>(&stream, (1 << 22) + 1), Err(Error::Range));
+    let mut doubled = accumulator::<f32>(&stream);
+    doubled.add(Samples::new(&[0.5], &[1.0])).unwrap();
+    let one = doubled.clone();
+    for _ in 0..22 {
+        doubled.merge(&doubled.clone()).unwrap();
+    }
+    assert_eq!((doubled.samples(), doubled.merge(&one)), (1 << 22, Err(Error::Range)));
+    let zeros = vec![0.0; most + 1];
+    let samples = Samples::new(&zeros, &zeros);
+    assert_eq!(control_variate::estimate::<f32>(&config, samples, &mut []), Err(Error::Range));
+    assert_eq!(control_variate::estimate::<f64>(&config, samples, &mut []), Err(Error::Memory));
+    let descent = Config { estimator: Estimator::GradientDescent, ..config };
+    assert_eq!(control_variate::gradient_descent::<f32>(&descent, samples, &mut [], &mut []), Err(Error::Range));
+    if let Ok(many) = usize::try_from(1_u64 << 32) {
+        assert_eq!(control_variate::workspace_len::<f64>(&config, many), Err(Error::Range));
+    }
+}
