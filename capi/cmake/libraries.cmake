@@ -37,6 +37,10 @@ function(noisefloor_library name kind)
     set_target_properties(${name} PROPERTIES LINKER_LANGUAGE C OUTPUT_NAME noisefloor)
     target_include_directories(${name} INTERFACE
         "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
+    # Where the processor has no such instruction, compilers call fmax and fmin.
+    if(CMAKE_SYSTEM_NAME STREQUAL Linux AND CMAKE_SIZEOF_VOID_P EQUAL 4)
+        target_link_libraries(${name} PRIVATE m)
+    endif()
 endfunction()
 
 if(NOISEFLOOR_STATIC)
