@@ -166,7 +166,7 @@ static void errors(void)
     index[3] = ITEMS;
     CHECK_STATUS(nf_table_update(&table, index, value, 4, 0.0f), NF_ERR_RANGE);
     CHECK_REFUSED(nf_table_probabilities(&table, index, 4, 1, weight), NF_ERR_RANGE, weight);
-    /* The last of more than are computed at a time. */
+    /* The last of 65: they are computed 64 at a time. */
     CHECK_REFUSED(nf_table_probabilities(&table, many, 65, 1, room), NF_ERR_RANGE, room);
     index[3] = UINT32_MAX;
     CHECK_STATUS(nf_table_update(&table, index, value, 4, 0.0f), NF_ERR_RANGE);
@@ -329,7 +329,7 @@ static void saving(void)
     /* Of any alignment. */
     CHECK_STATUS(nf_table_save(&table, misaligned(changed.start), len), NF_OK);
     CHECK(memcmp(saved.start, misaligned(changed.start), len) == 0);
-    /* A zero has no sign. */
+    /* A uniform fraction of -0 is saved as 0. */
     table.uniform_fraction = -0.0f;
     CHECK_STATUS(nf_table_save(&table, misaligned(changed.start), len), NF_OK);
     CHECK(memcmp((const char *)misaligned(changed.start) + 24, "\0\0\0", 4) == 0);

@@ -520,7 +520,8 @@ fn skipping_all_or_all_but_one() {
     }
 }
 
-/// Control functions and their integrals that are missing, too many or no numbers, and coordinates too many.
+/// Control functions and integrals that are missing, too many or not finite are refused, and so are too many
+/// coordinates.
 #[test]
 fn control_functions_must_match() {
     let mut rng = SplitMix64::new(33);

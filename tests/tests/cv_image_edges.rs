@@ -155,7 +155,7 @@ fn elsewhere_nothing_changes() {
         let [len, more] = [config, with].map(|config| image_workspace_len(&config, &of, n).unwrap());
         assert_eq!(more > len, n > 3 && config == Config::new(2, 2, 1));
     }
-    // Nor in windows of fewer than 8 pixels.
+    // Nor in groups of fewer than 8 pixels.
     for (pixels, follows) in [(7, false), (8, true)] {
         let u = points(pixels * 4, 2, &mut rng);
         let f = Shadow::Line.values(4, &u);
@@ -167,7 +167,7 @@ fn elsewhere_nothing_changes() {
     }
 }
 
-/// Which coordinates the edge is in: without polynomials those before and after them have no part in anything.
+/// The edge is sought in the two coordinates that `edges` names: at order 0 the others change no bit.
 #[test]
 fn edges_are_where_they_are_said_to_be() {
     let mut rng = SplitMix64::new(325);

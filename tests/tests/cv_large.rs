@@ -204,8 +204,8 @@ fn an_accumulator_and_its_buffer() {
     assert_eq!(Accumulator::<f64>::new(&config).err(), Some(Error::Unsupported));
 }
 
-/// A merged incremental stream goes on with the fits and the trust of all parts: the next sample of a function that is
-/// fitted all but exactly counts as the integral, though it lies at the end of the range.
+/// A merged incremental stream goes on with the fits and the trust of all parts: the next sample of a line, which the
+/// fits know almost exactly, adds the integral 3 and not its own value 4, to a tenth of the difference.
 #[test]
 fn merged_incremental_streams_go_on() {
     let config = config(1, 1, Estimator::Incremental);

@@ -397,7 +397,7 @@ fn luminance_ratio() {
     }
 }
 
-/// Of merged streams, and of those samples alone that are not skipped.
+/// The ratio of merged streams, and of arrays with samples to skip, is that of the used samples in one array.
 #[test]
 fn luminance_ratio_of_parts() {
     let (u, red) = noisy(48, 2, 951);

@@ -1,4 +1,4 @@
-//! Streams of samples in hard cases: few or none, merged, in single precision, more than memory holds.
+//! Many samples and merged ones: single precision, memory, and how many are refused.
 
 use crate::cv_support::*;
 use noisefloor::Error;
@@ -143,7 +143,8 @@ fn memory_of_incremental_estimates() {
     assert_eq!((estimate(len), estimate(len - 1)), (Ok(()), Err(Error::Memory)));
 }
 
-/// More samples than sums or counts hold are refused, before any is read, and so is asking for the workspace.
+/// More samples than sums or counts hold are refused, before any is read, and so are merging and asking for the
+/// workspace.
 #[test]
 fn too_many_samples() {
     let config = config(1, 0, Estimator::Robust);

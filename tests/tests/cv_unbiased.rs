@@ -264,9 +264,10 @@ fn standard_errors_are_calibrated() {
     }
 }
 
-/// Of least squares where samples lie in the lower half alone, so that the estimate is four times as uncertain as among
-/// as many that lie evenly: the errors of a line in noise are told as such. 4,000 repetitions know the ratio within 5 %
-/// (95 %).
+/// Least squares of 16 samples in the lower half, where the variance is four times that of evenly spread samples: the
+/// square of the standard error is on average once to 1.24 times it, the margin of `residual_variance` at 16 samples
+/// and one function, of which the ridge takes a part. 4,000 repetitions know the ratio within 4.5 % (95 %); the limits
+/// are 5 standard deviations beyond.
 #[test]
 fn least_squares_knows_where_samples_lie() {
     let u: Vec<f32> = (0..16).map(|i| (i as f32 + 0.5) / 32.0).collect();
@@ -281,8 +282,8 @@ fn least_squares_knows_where_samples_lie() {
             error += (f64::from(estimate.mean[0]) - 2.0).powi(2);
         }
         let ratio = square / error;
-        assert!((0.9..1.4).contains(&ratio), "{solver:?} {streaming}: {ratio}");
         println!("{solver:?} {streaming}: {ratio:.3}");
+        assert!((0.885..1.38).contains(&ratio), "{solver:?} {streaming}: {ratio}");
     }
 }
 

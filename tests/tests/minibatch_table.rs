@@ -53,10 +53,8 @@ fn updates_in_order() {
     assert_eq!(table.importance(2), 8.0);
     table.update(&[2], &[1.0], 1.0).unwrap();
     assert_eq!(table.importance(2), 8.0);
-    for momentum in 0..100 {
-        table.update(&[0, 0], &[f32::MAX; 2], momentum as f32 / 100.0).unwrap();
-        assert!(table.importance(0).is_finite(), "{momentum}");
-    }
+    table.update(&[0, 0], &[f32::MAX; 2], 0.5).unwrap();
+    assert!(table.importance(0).is_finite());
     table.update(&[], &[], 0.5).unwrap();
 }
 
@@ -352,14 +350,13 @@ fn memory_need_not_match() {
     assert_eq!(made(2000, sums), Ok(1024));
     assert_eq!(made(importance, 4000), Ok(1008));
     assert_eq!(made(importance, sums - 1), Err(Error::Memory));
-    // What lies in more memory than there are sums for is no item's.
+    // Behind the items there may be anything: what does not exist has importance 0.
     let mut longer = [[1.0; 16], [5.0; 16]].concat();
     let state = Borrowed::new(&mut longer[..16], &mut [0; 16], 16, None).unwrap().state();
     assert_eq!(Table::resume(&longer[..], &[0; 16][..], state).unwrap().importance(20), 0.0);
 }
 
-/// An item or a child of no weight holds no number, not even where others end; the kernels of processors compare with
-/// these.
+/// An item or child of no weight is never found, not even at the border between others.
 #[test]
 fn borders_belong_to_what_has_weight() {
     let mut q = [0.0; 16];

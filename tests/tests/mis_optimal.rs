@@ -403,8 +403,8 @@ fn decay_weighs_old_samples_less() {
     assert_eq!(omis.solve(Solver::Balance, &mut [0.0]), Err(Error::NoSamples));
 }
 
-/// Densities that differ by their rounding alone say nothing: no coefficient is larger than values are, however small
-/// the ridge. A table of a nearly equal technique that does not quite sum to one would else be magnified.
+/// Densities that differ by rounding alone say nothing: coefficients stay of the size of values, however small the
+/// ridge. So a table whose probabilities sum to one only nearly does no harm.
 #[test]
 fn rounding_is_no_technique() {
     let mut rng = Rng::seed(12);
@@ -415,7 +415,7 @@ fn rounding_is_no_technique() {
     }
     let mut alpha = [0.0; 2];
     omis.alpha(Solver::Ridge(1e-8), &mut alpha).unwrap();
-    assert!(alpha.iter().all(|alpha| alpha.abs() < 10.0), "{alpha:?}");
+    assert!(alpha.iter().all(|alpha| alpha.abs() < 2.0), "{alpha:?}");
 }
 
 #[test]

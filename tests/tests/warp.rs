@@ -212,11 +212,12 @@ fn edges_map_into_the_range_and_have_density() {
         let b = uniform_triangle(u);
         assert!(b.min_element() >= 0.0 && (b.x + b.y + b.z - 1.0).abs() < 2e-7, "{u}: {b}");
     }
-    // All around: rounding takes no point off the disc, and none above the horizon.
-    for turn in 0..1000 {
-        let u = Vec2::new(1.0, turn as f32 / 1000.0);
-        assert!(concentric_disc_pdf(concentric_disc(u)) > 0.0, "{u}");
-        assert_eq!(cosine_hemisphere(u).z, 0.0, "{u}");
+    // The whole rim: rounding takes no point off the disc, and lifts none off the horizon.
+    for t in (0..1000).map(|turn| turn as f32 / 1000.0) {
+        for u in [Vec2::new(1.0, t), Vec2::new(0.0, t), Vec2::new(t, 1.0), Vec2::new(t, 0.0)] {
+            assert!(concentric_disc_pdf(concentric_disc(u)) > 0.0, "{u}");
+            assert_eq!(cosine_hemisphere(u).z, 0.0, "{u}");
+        }
     }
 }
 

@@ -40,11 +40,10 @@ impl Mixture {
 
     /// The numbers of 64 bits, divided between the ways.
     pub(super) fn ways(&self) -> Ways {
-        // In halves: what converts a number beyond 2^63 says FE_INVALID first.
+        // In halves: converting a number above 2^63 raises FE_INVALID on some processors.
         let scaled = self.uniform * TWO_32;
         let high = scaled as i64;
-        let both = ((high as u128) << 32) + ((scaled - high as f64) * TWO_32) as i64 as u128;
-        let uniform = if self.uniform < 1.0 { both } else { 1 << 64 };
+        let uniform = ((high as u128) << 32) + ((scaled - high as f64) * TWO_32) as i64 as u128;
         Ways {
             last_uniform: uniform.checked_sub(1).map(|last| last as u64),
             scales: [

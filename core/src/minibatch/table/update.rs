@@ -44,6 +44,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
                 prefetch::<K, _>(self.blocks(), which);
                 prefetch::<K, _>(self.nodes(), which / CHILDREN);
             }
+            // No valid importances exceed f32::MAX; a damaged one must not stay infinite or NaN.
             let mix = |&q: &f32| move |old: f32| (momentum * old + fresh * q).min(f32::MAX);
             in_range &= self.change(index.iter().copied().zip(importance.iter().map(mix)));
         }
