@@ -11,10 +11,10 @@ set(pkgconfig_dir "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
 # They are links in the repository, which install() would copy as such.
 foreach(header IN ITEMS noisefloor.h noisefloor.hpp noisefloor_sampler.h)
-    file(REAL_PATH "include/${header}" header)
+    file(REAL_PATH "${headers}/${header}" header)
     install(FILES "${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 endforeach()
-file(REAL_PATH include/noisefloor parts)
+file(REAL_PATH "${headers}/noisefloor" parts)
 install(DIRECTORY "${parts}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 # The tiles as files: for programs that read them (nf_tile_from_bytes), in place of the library's own.
 # Outside the workspace there are none.

@@ -2,6 +2,7 @@
 #
 # Takes out of cargo's static library what rustc made of all crates in link-time optimisation: one object, of which only
 # nf_* can be seen. What else is there (compiler-builtins: fmodf, cbrt, ...) would shadow the C library's.
+# Without an operating system all of the archive is kept.
 cmake_minimum_required(VERSION 3.21)
 execute_process(COMMAND "${AR}" t "${ARCHIVE}" OUTPUT_VARIABLE members COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "noisefloor-[^\r\n]*\\.o" members "${members}")

@@ -5,8 +5,8 @@ use anyhow::{Context, Result, ensure};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a C library always provides, and compilers call without being asked.
-const ALLOWED_UNDEFINED: [&str; 4] = ["memcpy", "memmove", "memset", "memcmp"];
+/// What a C library always provides, and compilers call without being asked; on Windows to grow the stack.
+const ALLOWED_UNDEFINED: [&str; 5] = ["memcpy", "memmove", "memset", "memcmp", "___chkstk_ms"];
 
 /// Builds the archive and returns its path.
 ///
@@ -42,7 +42,7 @@ pub fn one_object(raw: &Path, output: &Path, ar: &str) -> Result<PathBuf> {
     ensure!(own.len() == 1, "{} has {} objects of noisefloor instead of one", raw.display(), own.len());
     run::check(run::command(ar).current_dir(&scratch).arg("x").arg(raw).args(&own))?;
     fs::rename(scratch.join(own[0]), scratch.join("noisefloor.o"))?;
-    run::check(run::command(ar).current_dir(&scratch).args(["rcs", "libnoisefloor.a", "noisefloor.o"]))?;
+    run::check(run::command(ar).current_dir(&scratch).args(["rcsD", "libnoisefloor.a", "noisefloor.o"]))?;
     let new = scratch.join("libnoisefloor.a");
     let archive = output.join("libnoisefloor.a");
     // What links the library is not built anew where nothing has changed.
@@ -55,7 +55,7 @@ pub fn one_object(raw: &Path, output: &Path, ar: &str) -> Result<PathBuf> {
     Ok(archive)
 }
 
-/// Fails if the archive needs anything beyond the four memory functions, exports more than `nf_*`, or can panic. It may
+/// Fails if the archive needs anything beyond what compilers call, exports more than `nf_*`, or can panic. It may
 /// also need what cargo's own archive `builtins` has: arithmetic that a processor has no instructions for.
 pub fn check(archive: &Path, builtins: Option<&Path>) -> Result<()> {
     let symbols = names(archive, &[])?;

@@ -99,8 +99,8 @@ fn there(platform: &Platform, all: &Targets, raw: &Path) -> Result<(bare_metal::
         return Ok((bare_metal::wasm(platform, &module)?, "the example".to_owned()));
     };
     let archive = library::one_object(raw, &paths::output().join(platform.id()), &format!("{binutils}ar"))?;
-    library::check(&archive, (platform.board.is_some() || platform.is_windows()).then_some(raw))?;
-    println!("   no panic, no undefined symbol but mem* and the compiler's, only nf_* visible");
+    library::check(&archive, platform.board.is_some().then_some(raw))?;
+    println!("   no panic, no undefined symbol but mem* and the compiler's, only nf_* visible in the object");
     if let Some(board) = &platform.board {
         let told = bare_metal::alone(platform, board, binutils, raw)?;
         return Ok((told, "the example, without an operating system".to_owned()));
