@@ -1,6 +1,6 @@
 //! Shared fits over the pixels of an image: what the arguments mean, errors, exactness, scale, determinism.
 
-use crate::cv_support::{is_sound, largest, points, smooth, values, wide};
+use crate::cv_support::{is_sound, jittered, largest, points, smooth, values, wide};
 use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{
@@ -190,11 +190,7 @@ fn right_corrections_are_likely() {
 #[test]
 fn errors_of_stratified_samples() {
     let mut rng = SplitMix64::new(14);
-    let jittered = |pixels: usize, rng: &mut SplitMix64| -> Vec<f32> {
-        let cells = (0..4 * pixels).flat_map(|sample| [sample % 2, sample / 2 % 2]);
-        cells.map(|cell| (cell as f32 + rng.uniform() as f32) / 2.0).collect()
-    };
-    let u = jittered(1024, &mut rng);
+    let u = jittered(1024, 4, &mut rng);
     let f = values(&u, 2, |u| 1.0 + (1.5 * u[0] + u[1]).exp());
     let truth = 1.0 + (1.5_f64.exp_m1() / 1.5) * 1.0_f64.exp_m1();
     for order in [1, 2, 3] {
@@ -206,7 +202,7 @@ fn errors_of_stratified_samples() {
         println!("order {order}: {ratio:.3}");
         assert!((ratio - 1.0).abs() < 0.1, "order {order}: {ratio}");
     }
-    let (u, ridge) = (jittered(2, &mut rng), Ridge::Fixed(0.01));
+    let (u, ridge) = (jittered(2, 4, &mut rng), Ridge::Fixed(0.01));
     let f = values(&u, 2, |u| u[0] + u[1] * u[1]);
     let config = Config { stratified: true, ridge, ..Config::new(2, 1, 1) };
     let estimates = image(&config, &Image::new(2, 1), Samples::new(&u, &f)).unwrap();

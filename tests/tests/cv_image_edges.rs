@@ -2,7 +2,7 @@
 //!
 //! Seeds are fixed. A z-test is at |z| < 4.75, two-sided probability 2e-6; there are 160 of them.
 
-use crate::cv_support::points;
+use crate::cv_support::{jittered, points};
 use noisefloor::Error;
 use noisefloor::control_variate::{
     Config, Estimate, Estimator, Image, Ridge, Samples, estimate_image, image_workspace_len,
@@ -56,13 +56,6 @@ impl Shadow {
     }
 }
 
-/// One sample in each of n = k x k cells of every pixel.
-fn jittered(n: usize, rng: &mut SplitMix64) -> Vec<f32> {
-    let side = n.isqrt();
-    let mut at = |cell: usize| ((cell as f64 + rng.uniform()) / side as f64).min(0.999_999) as f32;
-    (0..PIXELS * n).flat_map(|i| [at(i % n % side), at(i % n / side)]).collect()
-}
-
 fn estimates(config: &Config, u: &[f32], f: &[f32]) -> Vec<Estimate> {
     image(config, &Image::new(SIDE, SIDE), Samples::new(u, f)).unwrap()
 }
@@ -75,7 +68,7 @@ fn bits(estimates: &[Estimate]) -> Vec<u32> {
 fn compare(config: &Config, shadow: Shadow, n: usize, rng: &mut SplitMix64) -> (f64, f64) {
     let (mut gained, mut all) = (Moments::default(), [Moments::default(); 2]);
     for _ in 0..60 {
-        let u = if config.stratified { jittered(n, rng) } else { points(PIXELS * n, 2, rng) };
+        let u = if config.stratified { jittered(PIXELS, n, rng) } else { points(PIXELS * n, 2, rng) };
         let f = shadow.values(n, &u);
         let [plain, edges] = [0, 1].map(|edges| {
             let of = |(pixel, e): (usize, &Estimate)| (f64::from(e.mean[0]) - shadow.integral(pixel)).powi(2);

@@ -40,23 +40,28 @@ fn merging_into_nothing_is_copying() {
     let mut rng = SplitMix64::new(15);
     let u = points(40, 2, &mut rng);
     let f: Vec<f32> = values(&u, 2, smooth).iter().map(|f| 1e6 + f).collect();
-    for estimator in ESTIMATORS.into_iter().filter(|&estimator| estimator != Estimator::LeaveOneOut) {
-        for solver in [Solver::Auto, Solver::SquareRoot]
-            .into_iter()
-            .filter(|&solver| solver == Solver::Auto || estimator == Estimator::LeastSquares)
-        {
-            let config = Config { solver, ..config(2, 2, estimator) };
-            fn check<R: Real>(config: &Config, u: &[f32], f: &[f32]) {
-                let (mut part, mut merged) = (accumulator::<R>(config), accumulator::<R>(config));
-                part.add(Samples::new(u, f)).unwrap();
-                merged.merge(&part).unwrap();
-                assert_eq!(finish(&merged), finish(&part), "{config:?}");
-            }
-            check::<f64>(&config, &u, &f);
-            check::<f32>(&config, &u, &f);
-        }
+    fn check<R: Real>(config: &Config, u: &[f32], f: &[f32]) {
+        let (mut part, mut merged) = (accumulator::<R>(config), accumulator::<R>(config));
+        part.add(Samples::new(u, f)).unwrap();
+        merged.merge(&part).unwrap();
+        assert_eq!(finish(&merged), finish(&part), "{config:?}");
     }
-    // Of other sizes, in `f32`: as in `f64`.
+    for config in streaming_configs(2, 2) {
+        check::<f64>(&config, &u, &f);
+        check::<f32>(&config, &u, &f);
+    }
+    let mut part = Regressor::<2, 6, 1>::new(Family::Legendre, 2).unwrap();
+    u.as_chunks().0.iter().zip(&f).for_each(|(u, &f)| part.add(u, &[f]).unwrap());
+    let mut merged = Regressor::new(Family::Legendre, 2).unwrap();
+    merged.merge(&part).unwrap();
+    assert_eq!(merged.estimate(0.01), part.estimate(0.01));
+    assert_eq!(merged.merge(&Regressor::new(Family::Sine, 2).unwrap()), Err(Error::Mismatch));
+}
+
+/// Parts whose values differ a thousand times merge in `f32` as in `f64`, to what sums in `f32` keep.
+#[test]
+fn merging_parts_of_other_sizes() {
+    let u = points(40, 2, &mut SplitMix64::new(15));
     let config = Config { solver: Solver::SquareRoot, ..config(2, 1, Estimator::LeastSquares) };
     fn both<R: Real>(config: &Config, u: &[f32]) -> Estimate {
         let f = values(u, 2, smooth);
@@ -69,12 +74,13 @@ fn merging_into_nothing_is_copying() {
     }
     let errors = [both::<f32>(&config, &u).std_error[0], both::<f64>(&config, &u).std_error[0]];
     assert!((errors[0] / errors[1] - 1.0).abs() < 1e-3, "{errors:?}");
-    let mut part = Regressor::<2, 6, 1>::new(Family::Legendre, 2).unwrap();
-    u.as_chunks().0.iter().zip(&f).for_each(|(u, &f)| part.add(u, &[f]).unwrap());
-    let mut merged = Regressor::new(Family::Legendre, 2).unwrap();
-    merged.merge(&part).unwrap();
-    assert_eq!(merged.estimate(0.01), part.estimate(0.01));
-    assert_eq!(merged.merge(&Regressor::new(Family::Sine, 2).unwrap()), Err(Error::Mismatch));
+}
+
+/// Values of a function with some noise, but for the first.
+fn values_after(first: f32, u: &[f32], rng: &mut SplitMix64) -> Vec<f32> {
+    let mut f: Vec<f32> = u.chunks(2).map(|u| 0.6 + 0.1 * u[0] + 0.01 * rng.uniform_f32()).collect();
+    f[0] = first;
+    f
 }
 
 /// In `f32` a stream whose first sample is an outlier or in shadow has, after 100,000 samples, added or merged one by
@@ -82,15 +88,10 @@ fn merging_into_nothing_is_copying() {
 #[test]
 fn narrow_streams_forget_their_first_sample() {
     let mut rng = SplitMix64::new(14);
-    let n = 100_000;
-    let u = points(n, 2, &mut rng);
+    let u = points(100_000, 2, &mut rng);
     for first in [1e4, 0.0] {
-        let mut f: Vec<f32> = u.chunks(2).map(|u| 0.6 + 0.1 * u[0] + 0.01 * rng.uniform_f32()).collect();
-        f[0] = first;
-        let mut configs = ESTIMATORS.map(|estimator| config(2, 1, estimator)).to_vec();
-        configs.retain(|config| config.estimator != Estimator::LeaveOneOut);
-        configs.push(Config { solver: Solver::SquareRoot, ..config(2, 1, Estimator::LeastSquares) });
-        for config in configs {
+        let f = values_after(first, &u, &mut rng);
+        for config in streaming_configs(2, 1) {
             let wide = streamed::<f64>(&config, &u, &f).unwrap();
             let mut merged = accumulator::<f32>(&config);
             for (u, f) in u.chunks(2).zip(f.chunks(1)) {
@@ -117,11 +118,9 @@ fn narrow_streams_forget_their_first_sample() {
 #[test]
 fn narrow_batches_forget_their_first_sample() {
     let mut rng = SplitMix64::new(15);
-    let n = 100_000;
-    let u = points(n, 2, &mut rng);
+    let u = points(100_000, 2, &mut rng);
     for first in [1e4, 0.0] {
-        let mut f: Vec<f32> = u.chunks(2).map(|u| 0.6 + 0.1 * u[0] + 0.01 * rng.uniform_f32()).collect();
-        f[0] = first;
+        let f = values_after(first, &u, &mut rng);
         for estimator in ESTIMATORS {
             let config = config(2, 1, estimator);
             let (wide, narrow) = (batch::<f64>(&config, &u, &f).unwrap(), batch::<f32>(&config, &u, &f).unwrap());

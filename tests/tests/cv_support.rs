@@ -4,8 +4,9 @@
 
 use noisefloor::Error;
 use noisefloor::basis::Family;
-use noisefloor::control_variate::{self, Config, Estimate, Estimator, Optimizer, Samples};
+use noisefloor::control_variate::{self, Config, Estimate, Estimator, Optimizer, Samples, Solver};
 use noisefloor::real::Real;
+use noisefloor_tests::ESTIMATORS;
 use noisefloor_tests::legendre;
 use noisefloor_tests::oracle::Design;
 use noisefloor_tests::random::SplitMix64;
@@ -48,6 +49,14 @@ pub fn config(dims: usize, order: usize, estimator: Estimator) -> Config {
     Config { estimator, ..Config::new(dims, order, 1) }
 }
 
+/// Whatever can be streamed: estimators, and least squares by the square root, too.
+pub fn streaming_configs(dims: usize, order: usize) -> Vec<Config> {
+    let mut configs = ESTIMATORS.map(|estimator| config(dims, order, estimator)).to_vec();
+    configs.retain(|config| config.estimator != Estimator::LeaveOneOut);
+    configs.push(Config { solver: Solver::SquareRoot, ..config(dims, order, Estimator::LeastSquares) });
+    configs
+}
+
 /// The largest order up to `order` that has at most 136 terms.
 pub fn limited(dims: usize, order: usize) -> usize {
     (0..=order).rev().find(|&order| Config::new(dims, order, 1).terms().is_ok()).unwrap()
@@ -56,6 +65,13 @@ pub fn limited(dims: usize, order: usize) -> usize {
 /// `n` independent uniform points.
 pub fn points(n: usize, dims: usize, rng: &mut SplitMix64) -> Vec<f32> {
     (0..n * dims).map(|_| rng.uniform_f32()).collect()
+}
+
+/// One point in each of n = k x k cells of the unit square, for every pixel.
+pub fn jittered(pixels: usize, n: usize, rng: &mut SplitMix64) -> Vec<f32> {
+    let side = n.isqrt();
+    let mut at = |cell: usize| ((cell as f64 + rng.uniform()) / side as f64).min(0.999_999) as f32;
+    (0..pixels * n).flat_map(|i| [at(i % n % side), at(i % n / side)]).collect()
 }
 
 /// A function's values at points.
