@@ -41,7 +41,9 @@ endfunction()
 set(rust_target "")
 set(opt_level 3)
 # Rust on Windows is for Microsoft's tools unless told otherwise, and on macOS for its own processor alone.
+set(must_name_target OFF)
 if(CMAKE_CROSSCOMPILING OR MINGW OR APPLE)
+    set(must_name_target ON)
     noisefloor_rust_target(rust_target)
 endif()
 if(CMAKE_SYSTEM_NAME STREQUAL Generic)
@@ -54,7 +56,7 @@ set(NOISEFLOOR_OPT_LEVEL "${opt_level}" CACHE STRING "3: fast; s, z: small")
 option(NOISEFLOOR_DOUBLE "Control variates in double precision; without, only NF_PRECISION_F32" ON)
 set(NOISEFLOOR_CARGO_OPTIONS "" CACHE STRING "More options for cargo, separated by semicolons")
 set(NOISEFLOOR_CARGO_ENVIRONMENT "" CACHE STRING "More of cargo's environment, NAME=VALUE, separated by semicolons")
-if((CMAKE_CROSSCOMPILING OR MINGW OR APPLE) AND NOT NOISEFLOOR_RUST_TARGET)
+if(must_name_target AND NOT NOISEFLOOR_RUST_TARGET)
     message(FATAL_ERROR
         "noisefloor: no Rust target is known for ${CMAKE_SYSTEM_NAME} on `${CMAKE_SYSTEM_PROCESSOR}`: name it, for "
         "example -DNOISEFLOOR_RUST_TARGET=thumbv7em-none-eabihf (`rustc --print target-list` has all)")
