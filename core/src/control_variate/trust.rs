@@ -192,7 +192,6 @@ impl<R: Real, const C: usize> Mixture<R, C> {
 
 /// Sets `weights` to those of C candidates, (error / plain error)^(-power) / C less a discount, and returns the plain
 /// mean's, all normalised. Errors are sums of squares.
-#[inline(always)]
 fn weigh<R: Real>(judge: &Judge<R>, plain: R, errors: &[R], discounts: &[R], weights: &mut [R]) -> R {
     let Judge { n, power, prior } = *judge;
     // Constant values: the mean is exact. A NaN cannot come from finite samples, but trust would go to the mean.
