@@ -49,5 +49,6 @@ install(FILES "${CMAKE_CURRENT_BINARY_DIR}/noisefloorConfig.cmake"
 
 file(RELATIVE_PATH prefix_from_pc "/prefix/${pkgconfig_dir}" "/prefix")
 string(REGEX REPLACE "/$" "" prefix_from_pc "${prefix_from_pc}")
+list(TRANSFORM mathematics PREPEND "-l" OUTPUT_VARIABLE libs_private)
 configure_file(cmake/noisefloor.pc.in noisefloor.pc @ONLY)
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/noisefloor.pc" DESTINATION "${pkgconfig_dir}")

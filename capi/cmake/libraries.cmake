@@ -30,6 +30,12 @@ add_custom_command(
 add_custom_target(noisefloor_object DEPENDS "${object}")
 set_source_files_properties("${object}" PROPERTIES EXTERNAL_OBJECT TRUE GENERATED TRUE)
 
+# Where the processor has no such instruction, compilers call fmax and fmin.
+set(mathematics "")
+if(cargo_target MATCHES "^arm.*-linux-")
+    set(mathematics m)
+endif()
+
 function(noisefloor_library name kind)
     add_library(${name} ${kind} "${object}")
     add_library(noisefloor::${name} ALIAS ${name})
@@ -37,10 +43,7 @@ function(noisefloor_library name kind)
     set_target_properties(${name} PROPERTIES LINKER_LANGUAGE C OUTPUT_NAME noisefloor)
     target_include_directories(${name} INTERFACE
         "$<BUILD_INTERFACE:${headers}>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
-    # Where the processor has no such instruction, compilers call fmax and fmin.
-    if(cargo_target MATCHES "^arm.*-linux-")
-        target_link_libraries(${name} PRIVATE m)
-    endif()
+    target_link_libraries(${name} PRIVATE ${mathematics})
 endfunction()
 
 if(NOISEFLOOR_STATIC)

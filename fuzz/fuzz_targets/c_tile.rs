@@ -144,7 +144,8 @@ fn run(bytes: &[u8]) -> Result<()> {
     // SAFETY: references are valid pointers, and messages are static strings.
     unsafe {
         assert!((0.0..1.0).contains(&nf_rng_uniform(&mut rng)));
-        nf_rng_seed(&mut rng, u64::from(nf_rng_next(&mut rng)));
+        let seed = u64::from(nf_rng_next(&mut rng));
+        nf_rng_seed(&mut rng, seed);
         assert_eq!(nf_rng_next(null_mut()), 0);
         let mut advice = MaybeUninit::uninit();
         let [dims, spp, sampling, can_share] =

@@ -172,8 +172,7 @@ fn in_pieces<R: Real>(config: &Config) {
     pieces.merge(&empty).unwrap();
     assert_eq!(finish(&pieces), Ok(whole));
     empty.merge(&pieces).unwrap();
-    let found = finish(&empty).unwrap();
-    assert!(found.samples == 96 && (found.mean[0] - whole.mean[0]).abs() < 1e-3, "{found:?} {whole:?}");
+    assert_eq!(finish(&empty), Ok(whole));
 }
 
 #[test]

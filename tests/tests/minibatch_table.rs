@@ -63,7 +63,8 @@ fn updates_in_order() {
 #[test]
 fn sums_do_not_wrap_around() {
     for (way, items) in [80, 80, 80, 80, 2048].into_iter().enumerate() {
-        let (q, sums) = memory(items + 144);
+        // Room for what is appended: 4 or 90.
+        let (q, sums) = memory(items + 90);
         let mut grown = Table::new(q, sums, items, None).unwrap();
         grown.set_uniform_fraction(0.0).unwrap();
         let range = (2f64.powi(62) / grown.state().scale) as f32;
