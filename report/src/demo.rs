@@ -145,12 +145,15 @@ const PAGE: &str = "playground.html";
 
 fn index(folder: &Path) -> Result<()> {
     let show = |(file, words): (&str, &str)| match file.ends_with('g') {
-        true => format!("<p>{words}</p>\n<img src=\"{file}\">\n"),
+        true => format!("<figure><figcaption>{words}</figcaption><img src=\"{file}\" alt=\"{words}\"></figure>\n"),
         false => format!("<p><a href=\"{file}\">{words}</a></p>\n"),
     };
     let mut shown = SHOWN.into_iter().filter(|(file, _)| folder.join(file).exists()).map(show);
-    let head = "<!doctype html><meta charset=\"utf-8\"><title>noisefloor: demo</title>\n";
-    fs::write(folder.join("index.html"), head.to_owned() + &shown.join("")).context("cannot write index.html")
+    let head = "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>noisefloor: demo</title>\n\
+        <meta name=\"viewport\" content=\"width=device-width\"><style>img { max-width: 100% }</style>\n\
+        <main><h1>noisefloor: demo</h1>\n";
+    fs::write(folder.join("index.html"), head.to_owned() + &shown.join("") + "</main>\n")
+        .context("cannot write index.html")
 }
 
 /// Raw and filtered errors over those of the plain mean of as many random samples.

@@ -43,7 +43,12 @@ pub(super) fn product(a: &Eight, b: &Eight) -> Eight {
 
 /// Sets sums to zero: they are few, and a call of memset takes longer.
 pub(super) fn empty(sums: &mut [Eight]) {
-    for sum in sums {
+    let (fours, rest) = sums.as_chunks_mut::<4>();
+    for four in fours {
+        *four = [NONE; 4];
+        lanes::keep_together();
+    }
+    for sum in rest {
         *sum = NONE;
         lanes::keep_together();
     }
