@@ -128,7 +128,7 @@ NFS_FUNCTION nfs_uint nfs_mix(nfs_uint h)
 
 NFS_FUNCTION nfs_uint nfs_child(nfs_uint domain, nfs_uint key)
 {
-    nfs_uint h = nfs_mix((key + 0x9e3779b9u) ^ (domain * 0x2c9277b5u));
+    nfs_uint h = nfs_mix(((key + 1u) * 0x9e3779b9u) ^ domain);
     return h == 0u ? 1u : h;
 }
 
@@ -184,7 +184,7 @@ NFS_FUNCTION nfs nfs_scramble(nfs s, nfs_uint seed)
 /* The table's pixel. */
 NFS_FUNCTION nfs_point nfs_place(nfs s)
 {
-    nfs_uint at = (s.flags & 2u) != 0u ? nfs_mix(s.place) : s.place;
+    nfs_uint at = (s.flags & 2u) != 0u ? nfs_mix(s.place * 0x9e3779b9u) : s.place;
     nfs_point p;
     p.x = at & 0xffffu;
     p.y = at >> 16;
@@ -203,8 +203,8 @@ NFS_FUNCTION nfs_point nfs_pair(nfs_uint x, nfs_uint y, nfs_uint first NFS_TABLE
     second ^= (second & 0x55555555u) << 1;
     p.x = first ^ (NOISEFLOOR_TABLE(NFS_INSERT(first >> 26, pixel, 6, 10)) << 16);
     p.y = second ^ (NOISEFLOOR_TABLE(NFS_INSERT(second >> 26, pixel, 6, 10)) & 0xffff0000u);
-    p.x ^= (NFS_INSERT(p.x >> 24, pixel, 8, 10) * 0x9e3779b9u) >> 8;
-    p.y ^= (NFS_INSERT(p.y >> 24, pixel, 8, 10) * 0xc13fa9a9u) >> 8;
+    p.x ^= (NFS_INSERT(p.x >> 25, pixel, 7, 10) * 0x9e3779b9u) >> 7;
+    p.y ^= (NFS_INSERT(p.y >> 25, pixel, 7, 10) * 0xc13fa9a9u) >> 7;
     return p;
 }
 
@@ -268,7 +268,7 @@ NFS_FUNCTION nfs_floats nfs_draw2(nfs s NFS_TABLE)
 NFS_FUNCTION nfs_floats nfs_draw4(nfs s NFS_TABLE)
 {
     nfs_point at = nfs_place(s);
-    nfs_uint first = nfs_order(s, at), other = s.domain * 0x9e3779b9u + 0x632be5abu;
+    nfs_uint first = nfs_order(s, at);
     nfs_point p;
     nfs_floats u;
     at = nfs_move(s, at);
@@ -279,7 +279,7 @@ NFS_FUNCTION nfs_floats nfs_draw4(nfs s NFS_TABLE)
             NFS_COLUMN(2, 0xa0000000u) ^ NFS_COLUMN(3, 0xd0000000u) ^ NFS_COLUMN(4, 0x68000000u) ^
             NFS_COLUMN(5, 0xfc000000u) ^ NFS_COLUMN(6, 0x72000000u) ^ NFS_COLUMN(7, 0xab000000u) ^
             NFS_COLUMN(8, 0xcb800000u);
-    p = nfs_pair(at.x + (other >> 7), at.y + (other >> 19), first NFS_GIVEN);
+    p = nfs_pair(at.x + 11u, at.y + 5u, first NFS_GIVEN);
     u.z = nfs_unit(s, p.x, 3u);
     u.w = nfs_unit(s, p.y, 4u);
     return u;

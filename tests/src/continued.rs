@@ -97,7 +97,7 @@ pub struct Errors {
     pub owen: Vec<f64>,
     /// Of the tile itself, continued.
     pub tile: Vec<f64>,
-    /// Of a domain of it, continued.
+    /// Of domains of it, continued: one for each row of pixels.
     pub domain: Vec<f64>,
 }
 
@@ -113,7 +113,7 @@ pub fn measure(tile: &Tile<'_>, Kind { integrands, .. }: &Kind, counts: &[u32], 
         random: errors(integrands, counts, |_, _| [rng.uniform_f32(), rng.uniform_f32()]),
         tile: errors(integrands, counts, |pixel, index| Sampler::pixel(tile, pixel % 16, pixel / 16, 0, index).draw()),
         domain: errors(integrands, counts, |pixel, index| {
-            Sampler::pixel(tile, pixel % 16, pixel / 16, 0, index).domain(5).draw()
+            Sampler::pixel(tile, pixel % 16, pixel / 16, 0, index).domain(pixel / 16).draw()
         }),
     }
 }

@@ -14,13 +14,17 @@
 /// assert_eq!(order, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]);
 /// ```
 pub fn shuffle(seed: u64, items: u32, position: u32) -> u32 {
-    let Some(start) = position.checked_rem(items) else { return 0 };
+    let Some(mut start) = position.checked_rem(items) else { return 0 };
     // At least two bits, so that both halves have one.
     let bits = (u32::BITS - (items - 1).leading_zeros()).max(2);
     let low_bits = bits / 2;
     let low_mask = (1u32 << low_bits) - 1;
     let high_mask = (1u32 << (bits - low_bits)) - 1;
     let rounds = if bits < 12 { SHORT_ROUNDS } else { ROUNDS };
+    // Networks alone are even permutations of 16 items and more: here the first two change places or not.
+    if start < 2 && items > 1 {
+        start ^= noise(seed, 2 * rounds, 0) >> 31;
+    }
     let mut at = start;
     loop {
         let (mut low, mut high) = (at & low_mask, at >> low_bits);

@@ -17,7 +17,8 @@ pub(super) fn point<const N: usize>(sampler: &Sampler) -> [u32; N] {
     let (mut x, mut y) = (u32::from(x), u32::from(y));
     let mut first = index.reverse_bits();
     if flags & WHITE != 0 {
-        let at = mix(x | y << 16);
+        // Of two small numbers `mix` alone makes places that near pixels share too often.
+        let at = mix((x | y << 16).wrapping_mul(GOLDEN));
         (x, y) = (at & 0xffff, at >> 16);
     }
     if domain != 0 {
@@ -28,10 +29,13 @@ pub(super) fn point<const N: usize>(sampler: &Sampler) -> [u32; N] {
     if N < 3 {
         return chunk(&[a, b, 0, 0]);
     }
-    let other = domain.wrapping_mul(GOLDEN).wrapping_add(0x632b_e5ab);
-    let [c, d] = pair(x.wrapping_add(other >> 7), y.wrapping_add(other >> 19), second(first));
+    let [c, d] = pair(x.wrapping_add(APART[0]), y.wrapping_add(APART[1]), second(first));
     chunk(&[a, b, c, d])
 }
+
+/// How far in the table the last two numbers are from the first two: in all domains too far for one to say something of
+/// the other.
+const APART: [u32; 2] = [11, 5];
 
 /// Where in the table a domain's pixel is: at another place, and mirrored and transposed or not, which keeps neighbours
 /// neighbours.
@@ -42,9 +46,9 @@ const fn place(domain: u32, x: u32, y: u32) -> (u32, u32) {
     ((x ^ across).wrapping_add(domain), (y ^ down).wrapping_add(domain >> 8))
 }
 
-/// Another order of a pixel's samples in each domain, of reversed numbers: a random one of those that keep the first 1,
-/// 2, 4, ... samples together, and each half of what follows them, and so on. Without it a sample's numbers in two
-/// domains would be the same function of its number in all pixels.
+/// Another order of a pixel's samples in each domain, of reversed numbers: one of those that keep the first 1, 2, 4, ...
+/// samples together, and each half of what follows them, and so on. Without it a sample's numbers in two domains would be
+/// the same function of its number in all pixels. It is alike in all octaves: whether their halves are exchanged, say.
 ///
 /// Each digit is exclusive-or a function of the digits after it, as both steps take bits upwards only.
 #[inline]

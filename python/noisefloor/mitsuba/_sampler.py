@@ -51,7 +51,7 @@ def _mix(h):
 
 
 def _child(domain, key):
-    h = _mix((key + 0x9E3779B9) ^ (domain * 0x2C9277B5))
+    h = _mix(((key + 1) * 0x9E3779B9) ^ domain)
     return dr.select(h == 0, mi.UInt32(1), h)
 
 
@@ -66,8 +66,7 @@ def draw(domain, x, y, first, second=False, scrambled=False, few=False):
     first = dr.select(domain == 0, first, ordered)
     x, y = _move(domain, x, y)
     if second:
-        other = domain * 0x9E3779B9 + 0x632BE5AB
-        x, y, first = x + (other >> 7), y + (other >> 19), _multiply(first)
+        x, y, first = x + 11, y + 5, _multiply(first)
     values = _pair(((y & (SIZE - 1)) << 5) | (x & (SIZE - 1)), first, few)
     if scrambled:
         number = 3 if second else 1
@@ -110,7 +109,7 @@ def _pair(pixel, first, few):
     of_first = entry(first)
     of_second = of_first if few else entry(second)
     values = first ^ (of_first << 16), second ^ (of_second & 0xFFFF0000)
-    return [v ^ ((((pixel << 8) | (v >> 24)) * factor) >> 8) for v, factor in zip(values, FINE)]
+    return [v ^ ((((pixel << 7) | (v >> 25)) * factor) >> 7) for v, factor in zip(values, FINE)]
 
 
 def _size(film):
@@ -215,7 +214,7 @@ def kind():
             x, y = self.corner
             self.x, self.y = (pixel - row * width + x) & 0xFFFF, (row + y) & 0xFFFF
             if self.white:
-                at = _mix(self.x | (self.y << 16))
+                at = _mix((self.x | (self.y << 16)) * 0x9E3779B9)
                 self.x, self.y = at & 0xFFFF, at >> 16
 
         def advance(self):
