@@ -22,7 +22,8 @@
  *    a `learning_rate` of the caller's: hosts may trap these.
  *  - Configurations are plain numbers; zero in an optional field means the documented default (of nf_cv_config all but
  *    dims, order and channels are optional), an unknown value is NF_ERR_RANGE. Zero or NULL is what is not there.
- *  - Not listed with each function: NF_ERR_NULL and NF_ERR_ALIGNMENT of any pointer, NF_ERR_STATE of any object.
+ *  - Not listed with each function: NF_ERR_NULL and NF_ERR_ALIGNMENT of any pointer, NF_ERR_STATE of any object. Arrays
+ *    of no elements may be NULL, and calls for no rows, items or integrals succeed, unless their errors name that.
  *  - NF_ERR_RANGE does not say which argument it means: a function's comment lists those that it can mean, with their
  *    ranges there or where they are declared. nf_check() names the field of a configuration.
  *  - References such as (4.22) are to C. Salaun, "Toward Improving Monte Carlo Estimator for Rendering and

@@ -140,7 +140,7 @@ pub unsafe extern "C" fn nf_omis_solve(
 
 /// Ends a batch, between whole rounds: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so
 /// far on those that follow, and 0 before the first call. Then multiplies all sums by beta: 1 unless integrals drift,
-/// as gradients do.
+/// as gradients do; 0 forgets all samples.
 ///
 /// NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE as the solver; NF_ERR_RANGE, NF_ERR_NOT_FINITE also for a beta outside 0..1;
 /// else as for nf_omis_solve.
@@ -174,8 +174,9 @@ pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis
 ///
 /// solver: NF_OMIS_RIDGE or NF_OMIS_PLAIN, consistent, of weights that may be negative, or NF_OMIS_BALANCE, unbiased.
 /// ridge: as for nf_omis_solve. techniques: J, 1..NF_MIS_MAX_TECHNIQUES. items: N, of the data set, at least 1.
-/// pdf[batch * J]: the probability, above 0 to 1, with which technique j draws the item of sample s, at s * J + j,
-/// before any update; 0 only for others than the technique that drew it. technique[batch]: which one drew sample s.
+/// pdf[batch * J]: the probability, above 0 to 1 (1.001 for rounding), with which technique j draws the item of sample
+/// s, at s * J + j, before any update; 0 only for others than the technique that drew it. technique[batch]: which one
+/// drew sample s.
 /// weight[batch]: the output; one beyond the range of float becomes the largest finite float.
 ///
 /// With n_j samples of technique j, S_s = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2, weight_s =

@@ -108,7 +108,7 @@ pub extern "C" fn nf_sampler_table() -> *const u32 {
 ///
 /// samplers[domains]: all at the first pixel and sample. dims[domains]: how many numbers of each, 1..4. width, height:
 /// pixels to the right and down. samples: of each pixel, by ascending index. u[height][width][samples][sum of dims], of
-/// which `len` numbers are there.
+/// which `len` numbers, or more than needed, are there.
 ///
 /// NF_ERR_RANGE: dims, or sizes that memory cannot have; NF_ERR_MEMORY: len.
 #[unsafe(no_mangle)]

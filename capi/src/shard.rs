@@ -39,8 +39,8 @@ pub unsafe extern "C" fn nf_table_shard(table: *const nf_table, out: *mut nf_sha
 /// right on average. They sum to batch. Every process calls it with the same shards and a generator of the same seed.
 /// uniform_fraction: that of all tables.
 ///
-/// NF_ERR_RANGE: a negative sum, 2^53 items or more, uniform_fraction; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: no shards,
-/// no items, or nothing that can be drawn.
+/// NF_ERR_RANGE: a negative sum, one of no items, 2^53 items or more together, uniform_fraction; NF_ERR_NOT_FINITE;
+/// NF_ERR_NO_SAMPLES: no shards, no items, or nothing that can be drawn.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_shards_allocate(
     shard: *const nf_shard,

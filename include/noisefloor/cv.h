@@ -122,9 +122,9 @@ size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
 // Estimates `integrals` integrals from `samples->n` samples of each, apart from each other: out[integrals]. Nothing of
 // the workspace, nf_cv_workspace_size() bytes, is kept.
-// NF_ERR_RANGE: the configuration, a coordinate, or a size that no memory has; NF_ERR_NOT_FINITE: a sample;
-// NF_ERR_NO_SAMPLES; NF_ERR_MEMORY: the workspace; NF_ERR_UNSUPPORTED: options that exclude each other, `known`, or of
-// several integrals `controls` and NF_NONFINITE_SKIP.
+// NF_ERR_RANGE: the configuration, a coordinate, more samples than the solver takes, or a size that no memory has;
+// NF_ERR_NOT_FINITE: a sample; NF_ERR_NO_SAMPLES; NF_ERR_MEMORY: the workspace; NF_ERR_UNSUPPORTED: options that
+// exclude each other, `known` and its integrals, or of several integrals `controls` and NF_NONFINITE_SKIP.
 nf_status nf_cv_estimate(const nf_cv_config *config, const nf_cv_samples *samples, size_t integrals, void *workspace,
     size_t bytes, nf_estimate *out);
 
@@ -158,6 +158,7 @@ typedef struct nf_cv_image {
     // see the same; pixels near 0 beside others are better kept apart by `surfaces`.
     const float *factors;
     // The pixels that all arrays hold, in all frames, and that count, at most 2^30 - 1; all zero: all of the image.
+    // Without `wanted` whole windows.
     nf_cv_rectangle given;
     // The pixels to estimate, of which every window must be given whole: see nf_cv_image_needed(). All zero: all that
     // are given. Parts that are estimated apart, by threads say, have the bits of the whole.
@@ -228,7 +229,8 @@ nf_status nf_cv_accumulator_init(void *memory, size_t bytes, const nf_cv_config 
 
 // Adds samples of the one integral: all of them or, on an error, none. Several at a time are cheaper. In single
 // precision an accumulator holds 2^22 samples.
-// NF_ERR_RANGE also for more samples than it holds; else as for nf_cv_estimate(), but NF_NONFINITE_SKIP may skip all.
+// NF_ERR_RANGE also for more samples than it holds; NF_ERR_NO_SAMPLES: n is 0; else as for nf_cv_estimate(), but
+// NF_NONFINITE_SKIP may skip all.
 nf_status nf_cv_accumulator_add(nf_cv_accumulator *accumulator, const nf_cv_samples *samples);
 
 // Adds all samples of `other`, which stays as it is.

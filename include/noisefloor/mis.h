@@ -97,7 +97,7 @@ nf_status nf_omis_solve(const nf_omis *omis, uint32_t solver, float ridge, float
 
 // Ends a batch, between whole rounds: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so
 // far on those that follow, and 0 before the first call. Then multiplies all sums by beta: 1 unless integrals drift,
-// as gradients do.
+// as gradients do; 0 forgets all samples.
 // NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE as the solver; NF_ERR_RANGE, NF_ERR_NOT_FINITE also for a beta outside 0..1;
 // else as for nf_omis_solve.
 nf_status nf_omis_next_batch(nf_omis *omis, uint32_t solver, float ridge, float beta);

@@ -103,8 +103,8 @@ nf_status nf_table_shard(const nf_table *table, nf_shard *out); // What the othe
 // How many of a batch's items each process draws: counts[shards], in proportion to the shards' probabilities, each
 // right on average. They sum to batch. Every process calls it with the same shards and a generator of the same seed.
 // uniform_fraction: that of all tables.
-// NF_ERR_RANGE: a negative sum, 2^53 items or more, uniform_fraction; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: no shards,
-// no items, or nothing that can be drawn.
+// NF_ERR_RANGE: a negative sum, one of no items, 2^53 items or more together, uniform_fraction; NF_ERR_NOT_FINITE;
+// NF_ERR_NO_SAMPLES: no shards, no items, or nothing that can be drawn.
 nf_status nf_shards_allocate(const nf_shard *shard, uint32_t shards, float uniform_fraction, nf_rng *rng,
     uint32_t batch, uint32_t *counts);
 
@@ -163,8 +163,9 @@ typedef struct nf_importance_arguments {
 // is the gradient of the mean loss for every parameter at once, by one backward pass over weighted losses.
 // solver: NF_OMIS_RIDGE or NF_OMIS_PLAIN, consistent, of weights that may be negative, or NF_OMIS_BALANCE, unbiased.
 // ridge: as for nf_omis_solve. techniques: J, 1..NF_MIS_MAX_TECHNIQUES. items: N, of the data set, at least 1.
-// pdf[batch * J]: the probability, above 0 to 1, with which technique j draws the item of sample s, at s * J + j,
-// before any update; 0 only for others than the technique that drew it. technique[batch]: which one drew sample s.
+// pdf[batch * J]: the probability, above 0 to 1 (1.001 for rounding), with which technique j draws the item of sample
+// s, at s * J + j, before any update; 0 only for others than the technique that drew it. technique[batch]: which one
+// drew sample s.
 // weight[batch]: the output; one beyond the range of float becomes the largest finite float.
 //
 // With n_j samples of technique j, S_s = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2, weight_s =

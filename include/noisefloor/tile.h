@@ -57,7 +57,7 @@ const uint32_t *nf_sampler_table(void);
 // Draws for many pixels and samples at once, with the bits of single draws.
 // samplers[domains]: all at the first pixel and sample. dims[domains]: how many numbers of each, 1..4. width, height:
 // pixels to the right and down. samples: of each pixel, by ascending index. u[height][width][samples][sum of dims], of
-// which `len` numbers are there.
+// which `len` numbers, or more than needed, are there.
 // NF_ERR_RANGE: dims, or sizes that memory cannot have; NF_ERR_MEMORY: len.
 nf_status nf_sampler_fill(const nf_sampler *samplers, const uint32_t *dims, size_t domains, uint32_t width,
     uint32_t height, uint32_t samples, float *u, size_t len);
@@ -92,7 +92,7 @@ extern const nf_tile nf_tile_64_4spp_2d_temporal; // The same, 4 samples, 16 fra
 
 // The tile of an .nft file's bytes, all of them checked: about 3 ms for a megabyte. They must outlive the tile,
 // unchanged.
-// NF_ERR_RANGE: len; NF_ERR_FOREIGN; NF_ERR_VERSION; NF_ERR_LENGTH; NF_ERR_CORRUPT.
+// NF_ERR_RANGE: a len that no memory has; NF_ERR_FOREIGN; NF_ERR_VERSION; NF_ERR_LENGTH; NF_ERR_CORRUPT.
 nf_status nf_tile_from_bytes(const void *bytes, size_t len, nf_tile *out);
 
 // One sample of one pixel, as nf_sampler is, drawn from a tile. Made by nf_tile_sampler_pixel.

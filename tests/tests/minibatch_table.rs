@@ -223,6 +223,7 @@ fn bad_shards_are_refused() {
     let good = [shard(1.0, 4), shard(0.0, 5)];
     assert_eq!((Shard::sum(good), Shard::sum([])), (Ok(shard(1.0, 9)), Err(Error::NoSamples)));
     assert_eq!(Shard::sum([shard(-1.0, 10)]), Err(Error::Range));
+    assert_eq!(Shard::sum([shard(1.0, 4), shard(5.0, 0)]), Err(Error::Range));
     assert_eq!(table(&[1.0, 2.0, 3.0, 4.0], 0.2).shard(), shard(10.0, 4));
     assert_eq!(call(&good, 0.2, 2), Ok(()));
     assert_eq!(call(&good, 0.2, 3), Err(Error::Range));

@@ -93,7 +93,8 @@ pub unsafe extern "C" fn nf_cv_accumulator_init(
 /// Adds samples of the one integral: all of them or, on an error, none. Several at a time are cheaper. In single
 /// precision an accumulator holds 2^22 samples.
 ///
-/// NF_ERR_RANGE also for more samples than it holds; else as for nf_cv_estimate(), but NF_NONFINITE_SKIP may skip all.
+/// NF_ERR_RANGE also for more samples than it holds; NF_ERR_NO_SAMPLES: n is 0; else as for nf_cv_estimate(), but
+/// NF_NONFINITE_SKIP may skip all.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_add(
     accumulator: *mut nf_cv_accumulator,

@@ -30,9 +30,9 @@ pub unsafe extern "C" fn nf_cv_workspace_size(config: *const nf_cv_config, n: us
 /// Estimates `integrals` integrals from `samples->n` samples of each, apart from each other: out[integrals]. Nothing of
 /// the workspace, nf_cv_workspace_size() bytes, is kept.
 ///
-/// NF_ERR_RANGE: the configuration, a coordinate, or a size that no memory has; NF_ERR_NOT_FINITE: a sample;
-/// NF_ERR_NO_SAMPLES; NF_ERR_MEMORY: the workspace; NF_ERR_UNSUPPORTED: options that exclude each other, `known`, or of
-/// several integrals `controls` and NF_NONFINITE_SKIP.
+/// NF_ERR_RANGE: the configuration, a coordinate, more samples than the solver takes, or a size that no memory has;
+/// NF_ERR_NOT_FINITE: a sample; NF_ERR_NO_SAMPLES; NF_ERR_MEMORY: the workspace; NF_ERR_UNSUPPORTED: options that
+/// exclude each other, `known` and its integrals, or of several integrals `controls` and NF_NONFINITE_SKIP.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_estimate(
     config: *const nf_cv_config,

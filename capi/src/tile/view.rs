@@ -36,7 +36,7 @@ unsafe impl Sync for nf_tile {}
 /// The tile of an .nft file's bytes, all of them checked: about 3 ms for a megabyte. They must outlive the tile,
 /// unchanged.
 ///
-/// NF_ERR_RANGE: len; NF_ERR_FOREIGN; NF_ERR_VERSION; NF_ERR_LENGTH; NF_ERR_CORRUPT.
+/// NF_ERR_RANGE: a len that no memory has; NF_ERR_FOREIGN; NF_ERR_VERSION; NF_ERR_LENGTH; NF_ERR_CORRUPT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_tile_from_bytes(bytes: *const c_void, len: usize, out: *mut nf_tile) -> nf_status {
     status((|| {

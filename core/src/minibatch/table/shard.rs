@@ -20,14 +20,15 @@ pub struct Shard {
 impl Shard {
     /// What all of these are together; every process must add them in the same order, for the same bits.
     ///
-    /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative sum or 2^53 items or more; [`Error::NoSamples`] if
-    /// there is no item.
+    /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative sum, one of no items, or 2^53 items or more;
+    /// [`Error::NoSamples`] if there is no item.
     pub fn sum(shards: impl IntoIterator<Item = Shard>) -> Result<Shard, Error> {
         let mut all = Shard::default();
         for shard in shards {
             ensure(shard.importance.is_finite(), Error::NotFinite)?;
             let items = all.items.saturating_add(shard.items);
             ensure(shard.importance >= 0.0 && items < 1 << 53, Error::Range)?;
+            ensure(shard.items > 0 || shard.importance == 0.0, Error::Range)?;
             all = Shard { importance: all.importance + shard.importance, items };
         }
         ensure(all.importance.is_finite(), Error::NotFinite)?;
