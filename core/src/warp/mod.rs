@@ -4,8 +4,8 @@
 //! - `u` is a point of the unit square. Both ends are accepted; what lies outside is clamped, and NaN counts as 0.
 //! - Directions are unit vectors of a local frame whose pole is +z, their densities per solid angle (1/sr). Points of
 //!   the disc and the triangle have densities per area.
-//! - A density is 0 outside what the warp can reach, and for NaN; a warp onto a set without area has infinite density,
-//!   the mark of a delta distribution in [`mis`](crate::mis).
+//! - A density at a point is 0 outside what the warp can reach, and for NaN; a warp onto a set without area has
+//!   infinite density, the mark of a delta distribution in [`mis`](crate::mis).
 //! - An inverse returns a point in 0..=1 for any argument. Where a warp folds a whole edge of the square onto one point
 //!   (a pole), it returns one of the points that map there.
 //!

@@ -14,7 +14,7 @@
 //!   across the pixels and, with several samples, by what they leave of the variance within pixels that they have not
 //!   seen. The choice has seen the pixel's own samples, though they count less: unbiased as the window grows.
 //! - [`Estimator::KFold`]: the same with two halves of the pixels, each weighted by what the other half's fits to
-//!   itself say. Exactly unbiased, at twice the time.
+//!   itself say. Exactly unbiased, at up to 1.6 times the time.
 //!
 //! The last two leave bright pixels out of fits that explain little (`bright`). What is left out for a pixel depends on
 //! its own samples in the robust estimator alone.
