@@ -177,10 +177,10 @@ impl Cell {
     /// pixel's fits: they leave .78 in those frames.
     fn time(&self, sampling: Sampling, samples: usize) -> (f32, f32) {
         let (unit, cost, independent, stratified) = match samples {
-            ..4 => (164.0, 259.0, 1440.0, 1540.0),
-            4..16 => (83.0, 161.0, 974.0, 3860.0),
-            16..64 => (45.0, 49.0, 248.0, 25400.0),
-            _ => (45.0, 49.0, 248.0, f32::INFINITY),
+            ..4 => (164.0, 331.0, 2120.0, 3060.0),
+            4..16 => (83.0, 226.0, 1440.0, 6710.0),
+            16..64 => (45.0, 97.0, 439.0, 81000.0),
+            _ => (45.0, 97.0, 439.0, f32::INFINITY),
         };
         let scale = self.cost / unit;
         let (longer, later) = if self.image_stride == 4 { (3.0, 2.0) } else { (1.0, 1.0) };
