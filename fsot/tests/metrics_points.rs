@@ -39,6 +39,19 @@ fn neighbours_are_those_of_all_pairs() {
     }
 }
 
+/// The densest lattices, scaled to the shortest vector sqrt(2), are the root lattices A1, A2, A3, D4, D5, E6, E7, E8:
+/// the squares of their cells' volumes are the determinants of their Cartan matrices.
+#[test]
+fn lattice_distances_are_those_of_root_lattices() {
+    for (dims, determinant) in (1..).zip([2.0f64, 3.0, 4.0, 4.0, 4.0, 3.0, 2.0, 1.0]) {
+        for points in [1, 1000] {
+            let cells = determinant.sqrt() * f64::from(points);
+            let distance = 2.0f64.sqrt() / cells.powf(1.0 / dims as f64);
+            assert_near(lattice_distance(points as usize, dims), distance, 1e-12, &format!("{dims} dimensions"));
+        }
+    }
+}
+
 #[test]
 fn neighbours_of_lattices_and_of_degenerate_sets() {
     // A square grid's spacing over the hexagonal one: sqrt(sqrt(3) / 2).

@@ -68,6 +68,19 @@ fn nearest(points: &Points) -> f32 {
     nearest
 }
 
+/// Of points at one place all but one are moved, by at most 1/4096; the others begin where they are.
+#[test]
+fn points_begin_where_they_are() {
+    let coordinates = vec![0.25, 0.5, 0.0, 0.75, 0.25, 0.5, 0.5, 0.25, 0.0, 0.75, 0.25, 0.25];
+    let initial = Some(Points::new(2, coordinates.clone()));
+    let begin = optimize(Problem { initial, quality: Quality::Iterations(0), ..Problem::new(6, 2) }).unwrap();
+    for (i, (point, given)) in begin.iter().zip(coordinates.chunks(2)).enumerate() {
+        assert_eq!(point != given, i == 2 || i == 4, "point {i}: {point:?}");
+        assert!(point.iter().zip(given).all(|(x, given)| (x - given).abs() <= 1.0 / 4096.0), "point {i}: {point:?}");
+    }
+    assert!(inside(&begin));
+}
+
 #[test]
 fn identical_points_part() {
     for (points, dims) in [(50, 2), (64, 3)] {

@@ -102,6 +102,7 @@ fn problems_that_are_none_are_refused() {
         SamplerProblem { border: f32::NAN, ..small() },
         SamplerProblem { weights: [0.0; 7], ..small() },
         SamplerProblem { candidates: 0, ..small() },
+        SamplerProblem { iterations: (1 << 40) + 1, ..small() },
     ];
     for problem in bad {
         assert!(SamplerOptimizer::new(problem).is_err());

@@ -105,6 +105,11 @@ fn an_exponential_moving_average_halves() {
     assert_eq!(TemporalKernel::Ema(0.05).weights(16).unwrap().len(), 16);
 }
 
+#[test]
+fn frames_between_may_weigh_nothing() {
+    assert_eq!(TemporalKernel::Tabulated(vec![2.0, 0.0, 1.0, 0.0]).weights(3).unwrap(), [1.0, 0.0, 0.5]);
+}
+
 /// Published values: the sustained response peaks at 60 ms; with the transient one added, the sum peaks earlier, and
 /// has a tail of the other sign, whose absolute value is used.
 #[test]

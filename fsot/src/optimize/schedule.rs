@@ -120,3 +120,71 @@ fn iterations(problem: &Problem, objectives: usize, windowed: bool) -> u64 {
     let size = if windowed { 1.0 } else { libm::log2(problem.points as f64).max(4.0) };
     libm::ceil(base * size * objectives as f64) as u64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::class::three_colors;
+    use std::sync::Arc;
+
+    fn of(points: usize, dims: usize, quality: Quality) -> Problem {
+        Problem { quality, ..Problem::new(points, dims) }
+    }
+
+    fn near(a: f32, b: f64) -> bool {
+        (f64::from(a) / b - 1.0).abs() < 1e-5
+    }
+
+    #[test]
+    fn steps_fall_exponentially() {
+        let schedule = Schedule::new(&of(1000, 2, Quality::Iterations(100)), 1);
+        assert!(!schedule.has_windows() && !schedule.in_windows(0));
+        assert!(near(schedule.step(0), 2.0) && near(schedule.step(50), 0.06f64.sqrt()));
+        assert!(near(schedule.step(99), 2.0 * 0.015f64.powf(0.99)));
+    }
+
+    #[test]
+    fn windows_are_between_iterations_of_all_points() {
+        let schedule = Schedule::new(&of(20_000, 2, Quality::Iterations(200)), 1);
+        let windowed: Vec<u64> = (0..200).filter(|iteration| schedule.in_windows(*iteration)).collect();
+        assert!(windowed.into_iter().eq(4..176) && schedule.has_windows());
+        assert!((0..4).all(|iteration| schedule.step(iteration) == 1.0));
+        assert!(near(schedule.step(4), 2.0) && near(schedule.step(90), 0.16f64.sqrt()));
+        assert!(near(schedule.step(176), 2.0) && near(schedule.step(188), 0.06f64.sqrt()));
+        // Of few iterations an eighth are before, a quarter behind; of many objectives more are behind.
+        let few = Schedule::new(&of(20_000, 2, Quality::Iterations(16)), 1);
+        assert!((0..16).filter(|iteration| few.in_windows(*iteration)).eq(2..12));
+        let many = Schedule::new(&of(20_000, 2, Quality::Iterations(1000)), 3);
+        assert!((0..1000).filter(|iteration| many.in_windows(*iteration)).eq(4..928));
+        assert!(!Schedule::new(&of(20_000, 2, Quality::Iterations(0)), 1).has_windows());
+    }
+
+    #[test]
+    fn large_uniform_sets_have_windows() {
+        for (points, dims, windowed) in [(8192, 2, false), (8193, 2, true), (8193, 3, true), (1 << 20, 4, false)] {
+            assert_eq!(is_windowed(&of(points, dims, Quality::Draft)), windowed, "{points} of {dims}");
+        }
+        let mut problem = Problem { classes: three_colors(2), ..of(9000, 2, Quality::Draft) };
+        assert!(is_windowed(&problem));
+        let image = crate::target::image::ImageTarget::new(1, 2, &[1.0, 2.0], 9000).unwrap();
+        problem.classes[2].target = Arc::new(image);
+        assert!(!is_windowed(&problem));
+        assert_eq!([1, 2, 3].map(|dims| windows_per_axis(16_384, dims)), [16, 4, 2]);
+        assert_eq!([(16_384, 2), (8193, 3), (100, 1)].map(|(points, dims)| window_count(points, dims)), [16, 8, 2]);
+    }
+
+    #[test]
+    fn iterations_grow_with_the_points_and_their_objectives() {
+        let of = |points, quality, objectives| Schedule::new(&of(points, 2, quality), objectives).iterations();
+        let all = |points, objectives| {
+            [Quality::Draft, Quality::Standard, Quality::High].map(|quality| of(points, quality, objectives))
+        };
+        assert_eq!(all(1024, 1), [320, 1700, 10_000]);
+        assert_eq!(all(1024, 3), [960, 5100, 30_000]);
+        assert_eq!(all(2, 1), all(16, 1), "of very few, too, some are needed");
+        assert_eq!(all(10_000, 1), all(100_000, 1), "in windows the size does not matter");
+        assert_eq!(all(10_000, 2), [160, 1600, 6400]);
+        let of = |values: &[usize]| objectives(values.iter().copied());
+        assert_eq!([of(&[0]), of(&[1, 1]), of(&[5, 0, 2]), of(&[5, 5])], [1, 2, 7, 8]);
+    }
+}

@@ -210,3 +210,38 @@ fn directions_are_units_and_isotropic() {
     // Half of .3 point up an axis: 1,500, and 5 standard deviations of 36.
     assert!((1320..1680).contains(&axes), "{axes}");
 }
+
+/// A point moves by the mean of what its slices want, each by its weight, in D times as many directions as one.
+#[test]
+fn points_move_by_weighted_means() {
+    let (first, points, step) = (700, 600, 0.7);
+    let rng = &mut stream(9, 0, 0);
+    let ranges =
+        [vec![0..1000, 1000..1300], vec![0..701, 950..1000, 1000..1290], vec![100..650, 1299..1300], Vec::new()];
+    let slices: Vec<Slice<3>> = ranges
+        .into_iter()
+        .map(|selected| Slice { direction: super::direction::direction(rng, 0.0), selected, ..Slice::new() })
+        .collect();
+    let offsets: Vec<Vec<[f32; 2]>> = (0..slices.len())
+        .map(|_| (0..1300).map(|_| [rng.uniform_f32() - 0.5, 0.1 + rng.uniform_f32()]).collect())
+        .collect();
+    let moved: Vec<(&Slice<3>, &[[f32; 2]])> = slices.iter().zip(offsets.iter().map(|o| &o[..])).collect();
+    let before: Vec<f32> = (0..points * 3).map(|_| rng.uniform_f32()).collect();
+    let mut after = before.clone();
+    super::slice::advance(&moved, first, step, &mut after, |from, to, axis| if axis == 2 { from } else { to });
+    for i in 0..points {
+        let number = (first + i) as u32;
+        let (mut sum, mut weight) = ([0.0f32; 3], 0.0);
+        for (slice, offsets) in &moved {
+            if slice.selected.iter().any(|range| range.contains(&number)) {
+                let [offset, counts] = offsets[first + i];
+                weight += counts;
+                (0..3).for_each(|k| sum[k] += slice.direction[k] * offset);
+            }
+        }
+        for k in 0..3 {
+            let way = if k == 2 { 0.0 } else { step * 3.0 * sum[k] / (weight + 2.0) };
+            assert!((after[3 * i + k] - before[3 * i + k] - way).abs() < 1e-5, "point {number}, axis {k}");
+        }
+    }
+}

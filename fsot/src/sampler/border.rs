@@ -114,3 +114,74 @@ pub(crate) fn between(prices: &[f32; BINS], coordinate: f32) -> f32 {
     let low = (place as usize).min(BINS - 2);
     prices[low] + (place - low as f32) * (prices[low + 1] - prices[low])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::stream;
+
+    /// Of points at random, more of them at one border.
+    fn border(points: u32) -> Border {
+        let mut border = Border::new(1024);
+        let mut rng = stream(1, 0, 0);
+        for _ in 0..points {
+            let coordinate = (rng.uniform_f32() * rng.uniform_f32() * 65536.0) as u16;
+            border.count(2, 0, coordinate, 1);
+        }
+        border
+    }
+
+    /// Counts are spread over bins near them, mirrored at the borders: none is lost there, or seen twice.
+    #[test]
+    fn what_is_spread_is_what_was_counted() {
+        let points = 3000;
+        let border = border(points);
+        for octave in 0..OCTAVES {
+            let mean: f32 = (0..BINS).map(|bin| border.surplus(octave, 0, bin)).sum::<f32>() / BINS as f32;
+            let density = if octave < 2 { 0.0 } else { points as f32 / (1024 << octave) as f32 };
+            assert!((mean - (density - 1.0)).abs() < 1e-4, "octave {octave}: {mean}");
+            assert_eq!(border.surplus(octave, 1, 7), -1.0, "the other axis has no points");
+        }
+    }
+
+    #[test]
+    fn a_point_more_adds_its_share() {
+        for (octave, coordinate) in [(2, 0), (3, 700), (5, 65_535), (6, 30_000)] {
+            let (before, mut after) = (border(3000), border(3000));
+            after.count(octave, 0, coordinate, 1);
+            let share = after.share(octave);
+            let mut change = [0.0; BINS];
+            around(bin(coordinate), share.len() - 1).for_each(|(bin, distance)| change[bin] += share[distance]);
+            for (bin, change) in change.into_iter().enumerate() {
+                let found = after.surplus(octave, 0, bin) - before.surplus(octave, 0, bin);
+                assert!((found - change).abs() < 1e-5, "octave {octave}, bin {bin}: {found} for {change}");
+            }
+            // The weights of a triangle, as many bins wide as the octave's points allow.
+            let side = [8.0, 8.0, 8.0, 8.0, 8.0, 4.0, 2.0][octave];
+            let unit = BINS as f32 / (1024 << octave) as f32;
+            assert!((share[1] - unit * (side - 1.0) / (side * side)).abs() < 1e-7);
+            after.count(octave, 0, coordinate, -1);
+            assert_eq!(after.counts, before.counts);
+        }
+    }
+
+    #[test]
+    fn the_past_adds_up() {
+        let mut border = border(3000);
+        border.remember(&[3]);
+        border.remember(&[3]);
+        for bin in [0, 100, 511] {
+            let surplus = border.surplus(3, 0, bin);
+            assert!((border.price(3, 0, bin) - 1.02 * surplus).abs() < 1e-5 * surplus.abs());
+            assert_eq!(border.price(4, 0, bin), border.surplus(4, 0, bin), "of another octave nothing is remembered");
+        }
+    }
+
+    #[test]
+    fn prices_are_linear_between_the_middles_of_bins() {
+        let prices: [f32; BINS] = std::array::from_fn(|bin| bin as f32);
+        for (coordinate, price) in [(0.0, 0.0), (0.5 / 512.0, 0.0), (1.25 / 512.0, 0.75), (0.5, 255.5), (1.0, 511.0)] {
+            assert_eq!(between(&prices, coordinate), price);
+        }
+    }
+}

@@ -408,3 +408,98 @@ impl Optimization for SamplerOptimizer {
         good
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(a: &[f32], b: &[f32], tolerance: f32) -> bool {
+        a.iter().zip(b).all(|(a, b)| (a - b).abs() < tolerance)
+    }
+
+    /// What a sweep changes bit by bit is what is found anew after it.
+    #[test]
+    fn sums_follow_the_changes() {
+        let problem = SamplerProblem { bits: 3, candidates: 6, ..SamplerProblem::default() };
+        let mut optimizer = SamplerOptimizer::new(problem).unwrap();
+        let energy = Energy::new(&optimizer.basis, &[1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0]);
+        let groups = Groups::new(&optimizer.problem, energy.points);
+        let before = optimizer.survey(&energy, &groups);
+        let mut all = before.clone();
+        let mut fields = optimizer.fields(&energy, &all);
+        // So hot that everything is taken: every pixel is visited, and changes.
+        optimizer.sweep(0, (&energy, &groups, 1e9), &mut fields, &mut all);
+        assert!(before.iter().zip(&all).all(|(before, after)| before != after));
+
+        let surplus = |optimizer: &SamplerOptimizer| -> Vec<f32> {
+            let bins = (0..OCTAVES * 2 * BINS).map(|i| (i / BINS / 2, i / BINS % 2, i % BINS));
+            bins.map(|(octave, axis, bin)| optimizer.border.surplus(octave, axis, bin)).collect()
+        };
+        let counted = surplus(&optimizer);
+        let found = optimizer.survey(&energy, &groups);
+        let seen = |places: &Places| [0, 1].map(|axis| places[axis][..energy.points].to_vec());
+        assert!(found.iter().zip(&all).all(|(found, kept)| seen(found) == seen(kept)));
+        assert_eq!(surplus(&optimizer), counted);
+        let anew = optimizer.fields(&energy, &all);
+        for &octave in &energy.octaves {
+            for pixel in 0..all.len() {
+                assert!(near(&fields.errors[pixel][octave], &anew.errors[pixel][octave], 1e-3));
+                assert!(near(&fields.around[pixel][octave], &anew.around[pixel][octave], 1e-3));
+            }
+            assert!(near(&fields.total[octave], &anew.total[octave], 1e-1));
+        }
+    }
+
+    /// A pixel is asked what the others ask: neither its own errors nor its own points count.
+    #[test]
+    fn a_pixel_does_not_answer_to_itself() {
+        let mut optimizer = SamplerOptimizer::new(SamplerProblem { bits: 3, ..SamplerProblem::default() }).unwrap();
+        let energy = Energy::new(&optimizer.basis, &[1.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0]);
+        let groups = Groups::new(&optimizer.problem, energy.points);
+        let all = optimizer.survey(&energy, &groups);
+        let fields = optimizer.fields(&energy, &all);
+        let pixel = 3 * 32 + 1;
+        let prices = optimizer.without(&energy, &optimizer.prices(&energy), &all[pixel]);
+        let around = optimizer.surroundings(&energy, &fields, pixel, prices);
+
+        optimizer.count(&energy, &all[pixel], -1);
+        let anew = optimizer.prices(&energy);
+        let mut asked = [0.0; SPECTRUM];
+        for &octave in energy.octaves.iter().rev() {
+            for axis in 0..2 {
+                let largest = anew[octave][axis].iter().fold(0.0f32, |most, price| most.max(price.abs()));
+                assert!(near(&prices[octave][axis], &anew[octave][axis], 1e-4 * largest));
+            }
+            for (other, errors) in fields.errors.iter().enumerate().filter(|(other, _)| *other != pixel) {
+                let wrapped = |d: i32| {
+                    if d > 16 {
+                        d - 32
+                    } else if d < -16 {
+                        d + 32
+                    } else {
+                        d
+                    }
+                };
+                let (dx, dy) = (wrapped(other as i32 % 32 - 1), wrapped(other as i32 / 32 - 3));
+                let mut seen = errors[octave].map(|error| optimizer.problem.mean * error);
+                if let Some(weight) = optimizer.weights.at(dx, dy) {
+                    weight.add(&errors[octave], &mut seen);
+                }
+                let factor = 2.0 * energy.weights[octave] / (1 << octave) as f32;
+                let terms = asked.iter_mut().zip(seen).zip(&optimizer.basis.energies);
+                terms.for_each(|((asked, seen), energy)| *asked += factor * energy * seen);
+            }
+            let largest = asked.iter().fold(0.0f32, |most, x| most.max(x.abs()));
+            assert!(near(&around.fields[octave], &asked, 1e-3 * largest));
+        }
+    }
+
+    /// The start is random, and so is one sample of each pixel: its energies are those of independent ones, to five
+    /// standard deviations or so.
+    #[test]
+    fn the_first_of_random_samples_are_white() {
+        let report = SamplerOptimizer::new(SamplerProblem { bits: 3, ..SamplerProblem::default() }).unwrap().measure();
+        assert!((report.raw[0] - 1.0).abs() < 0.05, "{:?}", report.raw);
+        assert!((report.filtered[0] - 1.0).abs() < 0.3, "{:?}", report.filtered);
+    }
+}

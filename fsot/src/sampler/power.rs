@@ -59,3 +59,34 @@ pub(crate) fn sum(at: [f32; 2], points: [&[f32]; 3], half: f32) -> f32 {
 pub(crate) fn total(s: &[f32; LANES]) -> f32 {
     ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_are_those_of_the_library() {
+        for half in [0.05f32, 0.325, 0.5, 0.75] {
+            for i in 1..=2000 {
+                let squared = (i as f32 / 1000.0).powi(3) / 4.0;
+                let (ours, exact) = (power(squared, half), libm::pow(f64::from(squared) + 1e-10, f64::from(half)));
+                assert!((f64::from(ours) / exact - 1.0).abs() < 3e-5, "{squared}^{half}: {ours} for {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn sums_are_those_of_their_terms() {
+        let points = |factor: f32| -> [f32; 16] { std::array::from_fn(|i| (i as f32 * factor).fract()) };
+        let (xs, ys, weights) = (points(0.37), points(0.61), points(0.23));
+        let mut into = [0.0; 16];
+        let all = terms([0.3, 0.8], [&xs, &ys, &weights], 0.325, &mut into);
+        for i in 0..16 {
+            let (dx, dy) = (f64::from(xs[i]) - 0.3, f64::from(ys[i]) - 0.8);
+            let exact = f64::from(weights[i]) * libm::pow(dx * dx + dy * dy, 0.325);
+            assert!((f64::from(into[i]) - exact).abs() < 1e-4, "{i}");
+        }
+        assert!((all - into.iter().sum::<f32>()).abs() < 1e-5);
+        assert_eq!(sum([0.3, 0.8], [&xs, &ys, &weights], 0.325), all);
+    }
+}

@@ -242,3 +242,99 @@ fn exponential(rng: &mut Rng) -> f32 {
     let exponent = (bits >> 23) as f32 - 127.0;
     -std::f32::consts::LN_2 * (exponent + (mantissa - 1.0) * (1.35 - 0.35 * (mantissa - 1.0)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::stream;
+    use crate::sampler::SamplerProblem;
+
+    /// The energy of a pixel's points by its definition: each octave's squared error, and what the rest of the tile
+    /// asks of each point.
+    fn energy(rules: &Rules, around: &Surroundings, places: &Places) -> f64 {
+        let [xs, ys] = places.map(|places| places.map(|place| f64::from(unit(place))));
+        let mut sum = 0.0;
+        for &octave in &rules.energy.octaves {
+            let count = 1 << octave;
+            let share = 1.0 / count as f64;
+            let mut own = 0.0;
+            for i in 0..count {
+                own += 2.0 * share * f64::from(rules.basis.mean_at(xs[i] as f32, ys[i] as f32));
+                for j in 0..i {
+                    let squared = (xs[i] - xs[j]).powi(2) + (ys[i] - ys[j]).powi(2);
+                    own -= 2.0 * share * share * libm::pow(squared + 1e-10, f64::from(rules.basis.half));
+                }
+            }
+            sum += f64::from(rules.energy.weights[octave]) * own;
+        }
+        for i in 0..rules.energy.points {
+            let first = rules.energy.octaves.iter().copied().find(|octave| i < 1 << octave).unwrap();
+            let [along_x, along_y] = &around.prices[first];
+            let asked = rules.basis.at(places[0][i], places[1][i], &around.fields[first]);
+            sum += f64::from(asked + between(along_x, xs[i] as f32) + between(along_y, ys[i] as f32));
+        }
+        sum
+    }
+
+    /// Cold, an arrangement is taken exactly if the energy falls; what the visit remembers of each point stays true.
+    #[test]
+    fn what_lowers_the_energy_is_taken() {
+        let basis = Basis::new(0.65);
+        let mut rng = stream(4, 0, 0);
+        let around = Surroundings {
+            fields: std::array::from_fn(|_| std::array::from_fn(|_| 0.02 * (rng.uniform_f32() - 0.5))),
+            prices: std::array::from_fn(|_| [0, 1].map(|_| std::array::from_fn(|bin| (0.02 * bin as f32).sin()))),
+        };
+        for (bits, shares) in [(6, [1.0; OCTAVES]), (3, [1.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0])] {
+            let problem = SamplerProblem { bits, ..SamplerProblem::default() };
+            let energy_of = Energy::new(&basis, &shares);
+            let groups = Groups::new(&problem, energy_of.points);
+            let rules = |temperature: f32| Rules {
+                basis: &basis,
+                energy: &energy_of,
+                groups: &groups,
+                bits,
+                temperature,
+                candidates: 1,
+            };
+            let (cold, hot) = (rules(0.0), rules(1e9));
+            let looked_at = energy_of.points;
+            let offsets = [[0; POINTS]; 2];
+            let start = || (offsets, places(&groups, &offsets, 5));
+            let mut pixel = Pixel::new(&cold, &around, 5, start());
+            let mut kept = [0; 2];
+            for _ in 0..400 {
+                let before = energy(&cold, &around, &pixel.places);
+                let mut proposal = Pixel::new(&hot, &around, 5, (pixel.offsets, pixel.places));
+                assert!(proposal.attempt(&mut rng.clone()), "hot, everything is taken");
+                let rise = energy(&hot, &around, &proposal.places) - before;
+                let taken = pixel.attempt(&mut rng);
+                if rise.abs() > 1e-3 {
+                    assert_eq!(taken, rise < 0.0, "{rise}");
+                    kept[usize::from(taken)] += 1;
+                }
+                let expected = if taken { &proposal } else { &pixel };
+                assert_eq!((pixel.offsets, pixel.places), (expected.offsets, expected.places));
+                let anew = places(&groups, &pixel.offsets, 5);
+                (0..2).for_each(|axis| assert_eq!(pixel.places[axis][..looked_at], anew[axis][..looked_at]));
+                let fresh = Pixel::new(&cold, &around, 5, (pixel.offsets, pixel.places));
+                for point in 0..looked_at {
+                    assert!((pixel.alone[point] - fresh.alone[point]).abs() < 1e-4);
+                    assert!((pixel.apart[point] - fresh.apart[point]).abs() < 1e-3);
+                }
+            }
+            assert!(kept[0] > 50 && kept[1] > 20, "{kept:?}");
+        }
+    }
+
+    /// The limits are five standard deviations.
+    #[test]
+    fn exponential_numbers_have_the_mean_1() {
+        let mut rng = stream(5, 0, 0);
+        let numbers: Vec<f64> = (0..100_000).map(|_| f64::from(exponential(&mut rng))).collect();
+        let mean = numbers.iter().sum::<f64>() / 1e5;
+        let beyond = numbers.iter().filter(|x| **x > 2.0).count() as f64 / 1e5;
+        assert!((mean - 1.0).abs() < 0.016 && (beyond - libm::exp(-2.0)).abs() < 0.0055, "{mean} {beyond}");
+        assert!(numbers.iter().all(|x| *x >= -1e-6));
+    }
+}
