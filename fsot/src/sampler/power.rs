@@ -5,7 +5,7 @@ use std::f32::consts::LN_2;
 /// Numbers that are worked on side by side.
 pub(crate) const LANES: usize = 8;
 
-/// `squared`^half, to about 2e-5 of it, for numbers from 1e-10 to 4. The same bits on every machine.
+/// `squared`^half, to 6e-5 of it, for numbers from 1e-10 to 4. The same bits on every machine.
 #[inline(always)]
 pub(crate) fn power(squared: f32, half: f32) -> f32 {
     // The exponent and the logarithm of the mantissa from sqrt(1/2) to sqrt(2).
@@ -70,7 +70,7 @@ mod tests {
             for i in 1..=2000 {
                 let squared = (i as f32 / 1000.0).powi(3) / 4.0;
                 let (ours, exact) = (power(squared, half), libm::pow(f64::from(squared) + 1e-10, f64::from(half)));
-                assert!((f64::from(ours) / exact - 1.0).abs() < 3e-5, "{squared}^{half}: {ours} for {exact}");
+                assert!((f64::from(ours) / exact - 1.0).abs() < 6e-5, "{squared}^{half}: {ours} for {exact}");
             }
         }
     }
