@@ -177,10 +177,10 @@ impl Cell {
     /// pixel's fits: they leave .78 in those frames.
     fn time(&self, sampling: Sampling, samples: usize) -> (f32, f32) {
         let (unit, cost, independent, stratified) = match samples {
-            ..4 => (164.0, 331.0, 2120.0, 3060.0),
-            4..16 => (83.0, 226.0, 1440.0, 6710.0),
-            16..64 => (45.0, 97.0, 439.0, 81000.0),
-            _ => (45.0, 97.0, 439.0, f32::INFINITY),
+            ..4 => (164.0, 338.0, 2140.0, 3010.0),
+            4..16 => (83.0, 231.0, 1450.0, 7350.0),
+            16..64 => (45.0, 87.0, 445.0, 56800.0),
+            _ => (45.0, 87.0, 445.0, f32::INFINITY),
         };
         let scale = self.cost / unit;
         let (longer, later) = if self.image_stride == 4 { (3.0, 2.0) } else { (1.0, 1.0) };

@@ -97,9 +97,9 @@ fn examples() {
     assert_eq!(recommend(2, 4, Sampling::Stratified, true, f32::INFINITY).unwrap().method, Method::Shared);
     let filtered = |sampling| recommend(2, 16, sampling, true, f32::INFINITY).unwrap().filtered_error;
     assert!(filtered(Sampling::Stratified) < filtered(Sampling::Independent));
-    // Windows that overlap pay later than those side by side, of which 81,000 ns was measured.
-    let overlapping = recommend(2, 16, Sampling::Stratified, true, 90_000.0).unwrap();
-    assert_eq!((overlapping.method, overlapping.pays_from), (Method::PlainMean, 162_000.0));
+    // Windows that overlap pay later than those side by side, of which 56,800 ns was measured.
+    let overlapping = recommend(2, 16, Sampling::Stratified, true, 60_000.0).unwrap();
+    assert_eq!((overlapping.method, overlapping.pays_from), (Method::PlainMean, 113_600.0));
     // Many samples bear more terms; in many dims there are too many of a high order.
     let order =
         |dims, samples| recommend(dims, samples, Sampling::Independent, false, f32::INFINITY).unwrap().config.order;
@@ -123,7 +123,7 @@ fn pinned() {
             bytes.extend([of.error, of.filtered_error, of.cost, of.pays_from].map(f32::to_le_bytes).as_flattened());
         }
     }
-    assert_eq!(crc(bytes), 0xbd68_72ca);
+    assert_eq!(crc(bytes), 0x48fb_6e9f);
 }
 
 /// Dims are rounded up, samples down, to what was measured.
