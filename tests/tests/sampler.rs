@@ -246,9 +246,9 @@ fn white_places_are_independent() {
     }
 }
 
-/// Children of different domains are different, but for the coincidences of 32 bits, which are scattered over the domains:
-/// of 4,096 parents with 1,024 children each no two share more than 16. They come in twos at least, as keys are
-/// exclusive-or the parent.
+/// Children of different domains are different, but for the coincidences of 32 bits, which are scattered over the
+/// domains: of 4,096 parents with 1,024 children each no two share more than 16. They come in twos at least, as keys
+/// are exclusive-or the parent.
 #[test]
 fn children_are_scattered() {
     let parents = (0..4096).map(|seed| root(0).scramble(seed + 1));

@@ -47,8 +47,8 @@ const fn place(domain: u32, x: u32, y: u32) -> (u32, u32) {
 }
 
 /// Another order of a pixel's samples in each domain, of reversed numbers: one of those that keep the first 1, 2, 4, ...
-/// samples together, and each half of what follows them, and so on. Without it a sample's numbers in two domains would be
-/// the same function of its number in all pixels. It is alike in all octaves: whether their halves are exchanged, say.
+/// samples together, and each half of what follows them, and so on. Without it a sample's numbers in two domains would
+/// be the same function of its number in all pixels. It is alike in all octaves: whether their halves are exchanged, say.
 ///
 /// Each digit is exclusive-or a function of the digits after it, as both steps take bits upwards only.
 #[inline]
