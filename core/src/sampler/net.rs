@@ -46,9 +46,9 @@ const fn place(domain: u32, x: u32, y: u32) -> (u32, u32) {
     ((x ^ across).wrapping_add(domain), (y ^ down).wrapping_add(domain >> 8))
 }
 
-/// Another order of a pixel's samples in each domain, of reversed numbers: one of those that keep the first 1, 2, 4, ...
-/// samples together, and each half of what follows them, and so on. Without it a sample's numbers in two domains would
-/// be the same function of its number in all pixels. It is alike in all octaves: whether their halves are exchanged, say.
+/// Another order of a pixel's samples in each domain, of reversed numbers: one of those that keep the first 1, 2, 4 and
+/// so on together, and each half of what follows them, and so on. Without it a sample's numbers in two domains would be
+/// the same function of its number in all pixels. It is alike in all octaves: exchanges the halves of all, or of none.
 ///
 /// Each digit is exclusive-or a function of the digits after it, as both steps take bits upwards only.
 #[inline]
