@@ -21,7 +21,6 @@ pub(crate) const SCRAMBLE: u32 = 0x7363_7261;
 /// but for that exception.
 #[inline]
 pub(crate) const fn child(domain: u32, key: u32) -> u32 {
-    // Keys are small numbers: but for the factor, domains that differ in low bits alone would share their children.
-    let h = mix(key.wrapping_add(1).wrapping_mul(GOLDEN) ^ domain);
+    let h = mix(key.wrapping_add(GOLDEN) ^ domain.wrapping_mul(0x2c92_77b5));
     h + (h == 0) as u32
 }

@@ -246,24 +246,6 @@ fn white_places_are_independent() {
     }
 }
 
-/// Children of different domains are different, but for the coincidences of 32 bits, which are scattered over the
-/// domains: of 4,096 parents with 1,024 children each no two share more than 16. They come in twos at least, as keys
-/// are exclusive-or the parent.
-#[test]
-fn children_are_scattered() {
-    let parents = (0..4096).map(|seed| root(0).scramble(seed + 1));
-    let mut children: Vec<_> =
-        parents.zip(0..).flat_map(|(parent, p)| (0..1024).map(move |key| (parent.domain(key).domain, p))).collect();
-    children.sort_unstable();
-    let mut pairs: Vec<(i32, i32)> =
-        children.windows(2).filter(|two| two[0].0 == two[1].0).map(|two| (two[0].1, two[1].1)).collect();
-    // Expected: 2,048, with a standard deviation of some 70.
-    assert!((1700..2400).contains(&pairs.len()), "{}", pairs.len());
-    pairs.sort_unstable();
-    let most = pairs.chunk_by(|a, b| a == b).map(<[_]>::len).max();
-    assert!(most <= Some(16), "{most:?}");
-}
-
 /// The error of half-planes, the same in all pixels, through a Gaussian of 2.1 pixels, over that of white noise.
 #[test]
 fn half_planes_vanish_through_a_filter() {
@@ -326,7 +308,7 @@ fn pinned_values() {
 }
 
 const PINNED: [u32; 4] = [7_249_622, 10_936_392, 14_745_817, 14_696_968];
-const PINNED_HASH: u64 = 13_562_306_636_093_956_440;
+const PINNED_HASH: u64 = 10_985_810_891_919_303_251;
 
 #[test]
 fn filled_at_once() {

@@ -51,7 +51,7 @@ def _mix(h):
 
 
 def _child(domain, key):
-    h = _mix(((key + 1) * 0x9E3779B9) ^ domain)
+    h = _mix((key + 0x9E3779B9) ^ (domain * 0x2C9277B5))
     return dr.select(h == 0, mi.UInt32(1), h)
 
 
