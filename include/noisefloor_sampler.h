@@ -203,8 +203,8 @@ NFS_FUNCTION nfs_point nfs_pair(nfs_uint x, nfs_uint y, nfs_uint first NFS_TABLE
     second ^= (second & 0x55555555u) << 1;
     p.x = first ^ (NOISEFLOOR_TABLE(NFS_INSERT(first >> 26, pixel, 6, 10)) << 16);
     p.y = second ^ (NOISEFLOOR_TABLE(NFS_INSERT(second >> 26, pixel, 6, 10)) & 0xffff0000u);
-    p.x ^= (NFS_INSERT(p.x >> 25, pixel, 7, 10) * 0x9e3779b9u) >> 7;
-    p.y ^= (NFS_INSERT(p.y >> 25, pixel, 7, 10) * 0xc13fa9a9u) >> 7;
+    p.x ^= (NFS_INSERT(p.x >> 24, pixel, 8, 10) * 0x9e3779b9u) >> 8;
+    p.y ^= (NFS_INSERT(p.y >> 24, pixel, 8, 10) * 0xc13fa9a9u) >> 8;
     return p;
 }
 

@@ -16,6 +16,11 @@ fn root(pixel: u32) -> Sampler {
     Sampler::pixel(pixel % table::SIZE, pixel / table::SIZE, 0, 0)
 }
 
+/// The first n samples of all pixels.
+fn first(n: u32) -> impl Iterator<Item = [f32; 2]> {
+    (0..PIXELS).flat_map(move |pixel| (0..n).map(move |index| root(pixel).moved(0, 0, index).draw()))
+}
+
 /// The root, siblings, and chains with equal keys at each step.
 fn domains(root: Sampler, count: u32) -> Vec<Sampler> {
     let half = count / 2;
@@ -166,8 +171,7 @@ fn borders_are_sampled() {
     for n in [1, 4, 16] {
         for axis in 0..2 {
             for near in [|u: f32| u < 1.0 / 64.0, |u: f32| u >= 63.0 / 64.0] {
-                let all = (0..PIXELS).flat_map(|pixel| (0..n).map(move |i| root(pixel).moved(0, 0, i).draw::<2>()));
-                let count = all.filter(|u| near(u[axis])).count() as f64;
+                let count = first(n).filter(|u| near(u[axis])).count() as f64;
                 let density = count * 64.0 / f64::from(n * PIXELS);
                 assert!((0.9..=1.1).contains(&density), "{n} samples, axis {axis}: {density}");
             }
@@ -181,7 +185,7 @@ fn borders_are_sampled() {
 fn strata_are_filled() {
     for n in (0..=8).map(|m| 1 << m) {
         let mut counts = [[0; 8]; 2];
-        for value in (0..PIXELS).flat_map(|pixel| (0..n).map(move |i| root(pixel).moved(0, 0, i).draw::<2>())) {
+        for value in first(n) {
             for (counts, value) in counts.iter_mut().zip(value) {
                 counts[((value * n as f32).fract() * 8.0) as usize] += 1;
             }
@@ -194,42 +198,25 @@ fn strata_are_filled() {
     }
 }
 
-/// Values of few samples do not gather anywhere: over the table, 256 parts of each axis hold more equal numbers of them
-/// than of random points.
-#[test]
-fn values_are_even() {
-    for n in (0..=6).map(|m| 1 << m) {
-        let mut counts = [[0.0; 256]; 2];
-        for value in (0..PIXELS).flat_map(|pixel| (0..n).map(move |i| root(pixel).moved(0, 0, i).draw::<2>())) {
-            counts.iter_mut().zip(value).for_each(|(counts, value)| counts[(value * 256.0) as usize] += 1.0);
-        }
-        let expected = f64::from(n * PIXELS) / 256.0;
-        for counts in counts {
-            let variance = counts.iter().map(|count| (count - expected) * (count - expected)).sum::<f64>() / 256.0;
-            assert!(variance < expected, "{n} samples: {variance}, of random points {expected}");
-        }
-    }
-}
-
 /// A domain's last two numbers say nothing of its first two, whatever its key: over the table their correlations are
 /// those of pixels that lie anywhere. Of 16,384 normal deviates of variance 1.2 the largest is beyond 6.5 with
 /// probability 5e-5.
 #[test]
 fn last_numbers_are_not_the_first() {
-    for domain in (0..4096).map(|key| root(0).domain(key)) {
+    for key in 0..4096 {
         let mut sums = [0.0; 4];
         for pixel in 0..PIXELS {
-            let sample = domain.moved(pixel % table::SIZE, pixel / table::SIZE, pixel % 4);
+            let sample = root(pixel).moved(0, 0, pixel % 4).domain(key);
             let [a, b, c, d]: [f64; 4] = sample.draw().map(|u: f32| f64::from(u) - 0.5);
             sums.iter_mut().zip([a * c, a * d, b * c, b * d]).for_each(|(sum, product)| *sum += product);
         }
         // The standard deviation of a product of uniform numbers is 1/12.
         let deviates = sums.map(|sum| sum * 12.0 / f64::from(PIXELS).sqrt());
-        assert!(deviates.iter().all(|z| z.abs() < 6.5), "{domain:?}: {deviates:?}");
+        assert!(deviates.iter().all(|z| z.abs() < 6.5), "{key}: {deviates:?}");
     }
 }
 
-/// White samplers' pixels near each other have the same place of 1,024 as often as any: of 264 Poisson numbers of mean
+/// White samplers' pixels near each other have the same place of 1,024 as often as any: of 304 Poisson numbers of mean
 /// 256, one is beyond 6 standard deviations with probability 1e-6.
 #[test]
 fn white_places_are_independent() {
@@ -307,8 +294,8 @@ fn pinned_values() {
     assert_eq!(hash, PINNED_HASH);
 }
 
-const PINNED: [u32; 4] = [7_249_622, 10_936_392, 14_745_817, 14_696_968];
-const PINNED_HASH: u64 = 10_985_810_891_919_303_251;
+const PINNED: [u32; 4] = [7_339_789, 10_993_543, 14_680_281, 14_696_968];
+const PINNED_HASH: u64 = 7_117_225_511_545_531_212;
 
 #[test]
 fn filled_at_once() {

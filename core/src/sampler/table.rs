@@ -37,13 +37,13 @@ pub(super) const fn pascal(first: u32) -> u32 {
     second ^ (second & 0x5555_5555) << 1
 }
 
-/// How the finer digits of each axis depend on the leading seven.
+/// How the finer digits of each axis depend on the leading eight.
 const FINE: [u32; 2] = [0x9e37_79b9, 0xc13f_a9a9];
 
-/// A coordinate with its offset, whose 25 bits below the leading 7 are exclusive-or a hash of these, of the pixel (row
+/// A coordinate with its offset, whose 24 bits below the leading 8 are exclusive-or a hash of these, of the pixel (row
 /// times side plus column) and of the axis, 0 or 1: without it, all points that share an offset would share their finer
-/// digits, and the table's eighth digit gathers the values of few samples near multiples of 1/64.
+/// digits.
 #[inline]
 pub const fn fine(value: u32, pixel: u32, axis: usize) -> u32 {
-    value ^ (pixel << 7 | value >> 25).wrapping_mul(FINE[axis & 1]) >> 7
+    value ^ (pixel << 8 | value >> 24).wrapping_mul(FINE[axis & 1]) >> 8
 }

@@ -109,7 +109,7 @@ def _pair(pixel, first, few):
     of_first = entry(first)
     of_second = of_first if few else entry(second)
     values = first ^ (of_first << 16), second ^ (of_second & 0xFFFF0000)
-    return [v ^ ((((pixel << 7) | (v >> 25)) * factor) >> 7) for v, factor in zip(values, FINE)]
+    return [v ^ ((((pixel << 8) | (v >> 24)) * factor) >> 8) for v, factor in zip(values, FINE)]
 
 
 def _size(film):
