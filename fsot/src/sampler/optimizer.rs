@@ -471,15 +471,7 @@ mod tests {
                 assert!(near(&prices[octave][axis], &anew[octave][axis], 1e-4 * largest));
             }
             for (other, errors) in fields.errors.iter().enumerate().filter(|(other, _)| *other != pixel) {
-                let wrapped = |d: i32| {
-                    if d > 16 {
-                        d - 32
-                    } else if d < -16 {
-                        d + 32
-                    } else {
-                        d
-                    }
-                };
+                let wrapped = |d: i32| (d + 16).rem_euclid(32) - 16;
                 let (dx, dy) = (wrapped(other as i32 % 32 - 1), wrapped(other as i32 / 32 - 3));
                 let mut seen = errors[octave].map(|error| optimizer.problem.mean * error);
                 if let Some(weight) = optimizer.weights.at(dx, dy) {
@@ -494,12 +486,12 @@ mod tests {
         }
     }
 
-    /// The start is random, and so is one sample of each pixel: its energies are those of independent ones, to five
-    /// standard deviations or so.
+    /// The start is random, and so is one sample of each pixel: its energies are those of independent ones. Of 30 seeds
+    /// they had standard deviations of .008 and .035, of which these are six.
     #[test]
     fn the_first_of_random_samples_are_white() {
         let report = SamplerOptimizer::new(SamplerProblem { bits: 3, ..SamplerProblem::default() }).unwrap().measure();
         assert!((report.raw[0] - 1.0).abs() < 0.05, "{:?}", report.raw);
-        assert!((report.filtered[0] - 1.0).abs() < 0.3, "{:?}", report.filtered);
+        assert!((report.filtered[0] - 1.0).abs() < 0.21, "{:?}", report.filtered);
     }
 }

@@ -43,9 +43,9 @@ pub(super) fn product(a: &Eight, b: &Eight) -> Eight {
 
 /// Sets sums to zero: they are few, and a call of memset takes longer.
 pub(super) fn empty(sums: &mut [Eight]) {
-    let (fours, rest) = sums.as_chunks_mut::<4>();
+    let (fours, rest) = sums.as_chunks_mut();
     for four in fours {
-        *four = [NONE; 4];
+        *four = [NONE; AT_ONCE];
         lanes::keep_together();
     }
     for sum in rest {

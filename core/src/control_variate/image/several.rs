@@ -5,7 +5,7 @@
 
 use super::super::config::Config;
 use super::batch::Batch;
-use super::products::{AT_ONCE, Eight, Four, NONE, Rows, minus, plus};
+use super::products::{AT_ONCE, Eight, Four, NONE, Rows, empty, minus, plus};
 use super::sliced::panels;
 use super::terms::Terms;
 use crate::arena::Arena;
@@ -32,7 +32,8 @@ impl<'a> Several<'a> {
         let coefficients = arena.take_lanes(LANES * terms.slices * panels * terms.columns());
         let differences = arena.take_lanes(panels);
         // What a candidate does not use, and what is none, stays 0.
-        coefficients.iter_mut().chain(differences.iter_mut()).for_each(|numbers| *numbers = NONE);
+        empty(coefficients);
+        empty(differences);
         Self {
             columns: arena.take_fours(terms.columns()),
             samples: Rows::new(terms.functions, values, arena),
