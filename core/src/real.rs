@@ -44,7 +44,7 @@ pub trait Real:
 
     /// Rounds to nearest.
     fn from_f64(value: f64) -> Self;
-    /// Exact for `f32`, and up to 2^53 for `f64`.
+    /// Exact up to 2^24 for `f32`, and up to 2^53 for `f64`.
     fn from_usize(value: usize) -> Self;
     /// Rounds to nearest; what is too large becomes infinite.
     fn to_f32(self) -> f32;

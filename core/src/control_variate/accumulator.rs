@@ -21,7 +21,8 @@ use crate::rows::{first_mut, from, from_mut, halves_mut};
 use core::num::NonZeroUsize;
 
 /// A streaming estimate of fixed size: everything but the sums themselves, a buffer of [`Accumulator::len`] numbers
-/// that every method takes as the last call left it. A shorter one is [`Error::Memory`].
+/// that every method takes as the last call left it, the first as [`Accumulator::reset`] did. A shorter one is
+/// [`Error::Memory`].
 ///
 /// Leave-one-out errors need the samples, which are gone, so the robust estimate trusts held-out errors instead: runs
 /// of samples are summed into folds, and each fold judges the fits to the other folds.

@@ -36,13 +36,14 @@ pub enum Solver {
     Auto,
     /// Normal equations (4.27) and L D L'.
     NormalEquations,
-    /// Givens rotations row by row: twice the digits on badly placed samples, about twice the time.
+    /// Givens rotations row by row: twice the digits on badly placed samples, about twice the time. For
+    /// [`Estimator::LeastSquares`], without [`Ridge::Auto`].
     SquareRoot,
-    /// The n x n system of the samples; not with control functions.
+    /// The n x n system of the samples, at most 4096; not with control functions.
     Dual,
 }
 
-/// What happens to a sample whose value or position is NaN or infinite.
+/// What happens to a sample with a NaN or an infinity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum NonFinite {
     /// The call fails with [`Error::NotFinite`].
@@ -58,8 +59,8 @@ pub enum Color {
     /// One factorisation, one right-hand side for each channel; each channel is as unbiased as the estimator.
     #[default]
     PerChannel,
-    /// The thesis's form (4.3): regress the Rec. 709 luminance, scale the plain mean by the ratio of luminances.
-    /// Standard errors are the luminance's, scaled alike: they leave out what the colour is uncertain by.
+    /// The thesis's form (section 4.3): regress the Rec. 709 luminance, scale the plain mean by the ratio of
+    /// luminances. Standard errors are the luminance's, scaled alike: they leave out what the colour is uncertain by.
     LuminanceRatio,
 }
 
@@ -102,7 +103,8 @@ pub enum Ridge {
 pub struct Config {
     /// Coordinates of a sample that are regressed, 1 to 16.
     pub dims: usize,
-    /// Largest total degree, 0 to 7; 0 is the plain mean. Terms, see [`Config::terms`], may not exceed 136.
+    /// Largest total degree, 0 to 7; 0 is the plain mean, but for control functions. Terms, see [`Config::terms`], may
+    /// not exceed 136.
     pub order: usize,
     /// Values of a sample, 1 to 4.
     pub channels: usize,
@@ -118,7 +120,7 @@ pub struct Config {
     pub stratified: bool,
     /// If above 1, the last coordinate picks one of this many equally likely alternatives (figure 4.15). Each takes a
     /// term: at most 136 less binomial(dims - 1 + order, order), the terms of the other coordinates, less `controls`.
-    /// That is 130 at 3 dims and order 2, of which up to 43 have functions of their own as well.
+    /// That is 130 at 3 dims and order 2, of which up to 43 have functions of their own as well. Order 0 takes none.
     pub slices: usize,
     /// Of two coordinates that pick a point of a light the first, counted from 1, below `dims`, with `slices` below
     /// `dims` - 1; 0 for none. With 4 and more samples in each pixel [`Estimator::Robust`] and [`Estimator::KFold`],
@@ -170,7 +172,8 @@ impl Config {
     /// Terms of the regression, constant included.
     ///
     /// # Errors
-    /// [`Error::Range`] if a field is out of range, [`Error::Unsupported`] for options that exclude each other.
+    /// [`Error::Range`] if a field is out of range, [`Error::Unsupported`] for a luminance ratio of other than 3
+    /// channels. What solvers do not go with, estimates find.
     pub fn terms(&self) -> Result<usize, Error> {
         Ok(1 + self.controls + self.checked_shape()?.columns())
     }
@@ -236,11 +239,11 @@ impl Config {
 pub struct Estimate {
     /// The integral, for each channel; unused channels are zero.
     pub mean: [f32; 4],
-    /// An estimate of the standard error of each mean; infinite for one sample, for a luminance ratio of samples whose
-    /// luminances cancel and, of values that are not all equal, for least squares of no more samples than terms, of
-    /// which no residual is left to tell.
+    /// An estimate of the standard error of each mean; infinite for one sample alone, for a luminance ratio of samples
+    /// whose luminances cancel and, of values that are not all equal, for least squares of no more samples than terms,
+    /// of which no residual is left to tell.
     pub std_error: [f32; 4],
-    /// Samples that were used.
+    /// Samples that were used, at most [`u32::MAX`].
     pub samples: u32,
     /// Estimated variance relative to the plain mean's, averaged over the channels: 1 means no gain. Infinite
     /// where the standard error is for lack of residuals.

@@ -127,7 +127,7 @@ impl<R: Real> Summary<R> {
             }
         }
         if let Some(PerChannel([red, green, blue, luminance])) = self.colour {
-            // (4.3): the colour of the plain mean, with the regressed luminance.
+            // Section 4.3: the colour of the plain mean, with the regressed luminance.
             let (regressed, deviation) = (mean[0], error[0]);
             let is_zero = luminance == 0.0;
             let divisor = black_box(if is_zero { 1.0 } else { luminance });

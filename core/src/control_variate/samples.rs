@@ -33,7 +33,7 @@ impl<'a> Samples<'a> {
         Self { u, f, controls: &[], control_integrals: &[] }
     }
 
-    /// Checks the arrays' lengths and every number.
+    /// Checks the arrays' lengths and every number that is read.
     ///
     /// # Errors
     /// What [`estimate`](super::estimate) says of its samples.

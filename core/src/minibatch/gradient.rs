@@ -86,7 +86,7 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
         &self.system
     }
 
-    /// Forgets every batch.
+    /// Forgets every batch: all of the memory becomes 0.
     pub fn reset(&mut self) {
         self.system = System::new(self.system.techniques);
         self.memory.as_mut().fill(0.0);
@@ -102,8 +102,8 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
     /// `f32` becomes the largest finite one. The gradients are read twice, once to see that they are finite.
     ///
     /// Errors, which leave everything as it was: [`Error::Range`] for a wrong length, number of techniques, beta or
-    /// ridge, or where gradients over probabilities are beyond the range of `f32`; [`Error::NotFinite`] for NaN or
-    /// infinity among the gradients, beta or ridge; [`Error::Unsupported`] for [`Solver::Progressive`].
+    /// ridge, or where gradients over probabilities add up beyond a quarter of the range of `f32`; [`Error::NotFinite`]
+    /// for NaN or infinity among the gradients, beta or ridge; [`Error::Unsupported`] for [`Solver::Progressive`].
     // Inlined into copies for wider registers.
     #[inline(always)]
     pub fn estimate(

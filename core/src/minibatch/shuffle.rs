@@ -6,7 +6,7 @@
 /// A position beyond the last counts from the start again; 0 where there are no items. Any seed is good.
 ///
 /// A Feistel network over the next power of two, walked until it arrives in `0..items` (J. Black and P. Rogaway,
-/// "Ciphers with Arbitrary Finite Domains", 2002): two networks on average. Not for cryptography.
+/// "Ciphers with Arbitrary Finite Domains", 2002): up to two networks on average. Not for cryptography.
 ///
 /// ```
 /// let mut order: Vec<u32> = (0..10).map(|k| noisefloor::minibatch::shuffle(1, 10, k)).collect();

@@ -35,8 +35,8 @@ pub fn balance(pdf: &[f32], counts: &[u32], technique: usize) -> Result<f32, Err
 /// The power heuristic: `(n_j p_j)^beta / sum_k (n_k p_k)^beta`; [`DEFAULT_BETA`] is 2.
 ///
 /// `beta` is positive and finite ([`Error::Range`], [`Error::NotFinite`]): 1 is the balance heuristic, and the limit at
-/// infinity the maximum heuristic. (2.13) prints the exponent outside the sum of its denominator; those weights would
-/// not sum to one, and these are Veach's. Other arguments and errors as for [`balance`].
+/// infinity the maximum heuristic, where none tie. (2.13) prints the exponent outside the sum of its denominator; those
+/// weights would not sum to one, and these are Veach's. Other arguments and errors as for [`balance`].
 pub fn power(pdf: &[f32], counts: &[u32], technique: usize, beta: f32) -> Result<f32, Error> {
     ensure(beta.is_finite(), Error::NotFinite)?;
     ensure(beta > 0.0, Error::Range)?;

@@ -175,7 +175,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         Ok(omis)
     }
 
-    /// Forgets every sample, and the progressive estimator's alpha.
+    /// Forgets every sample, and the progressive estimator's alpha: all of the memory becomes 0.
     pub fn reset(&mut self) {
         self.memory.as_mut().fill(0.0);
     }

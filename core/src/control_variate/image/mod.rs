@@ -88,12 +88,12 @@ fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
 /// `out` is called once for each pixel that is wanted, and only if all succeed.
 ///
 /// # Errors
-/// As for [`estimate`](super::estimate); [`Error::Unsupported`] also for a luminance ratio, for skipping samples, for
-/// control functions, for estimators other than the robust, leave-one-out and K-fold ones, for the last if something is
-/// known, and for solvers other than the normal equations; [`Error::Range`] also for an image without pixels or with
-/// more than [`Image::MAX_PIXELS`], for windows and parts that [`Image`] does not allow, for negative factors or
-/// integrals and for arrays of the wrong length; [`Error::NotFinite`] for factors, for what is known and for integrals
-/// that are not finite.
+/// As for [`estimate`](super::estimate), of up to `u32::MAX` samples; [`Error::Unsupported`] also for a luminance
+/// ratio, for skipping samples, for control functions, for estimators other than the robust, leave-one-out and K-fold
+/// ones, for the last if something is known, and for solvers other than `Auto` and the normal equations;
+/// [`Error::Range`] also for an image without pixels or with more than [`Image::MAX_PIXELS`], for windows and parts
+/// that [`Image`] does not allow, for negative factors or integrals and for arrays of the wrong length;
+/// [`Error::NotFinite`] for factors, for what is known and for integrals that are not finite.
 ///
 /// ```
 /// use noisefloor::control_variate::{Config, Image, Samples, estimate_image, image_workspace_len};

@@ -58,8 +58,8 @@ pub struct Image<'a> {
     /// With `known`: for each pixel `channels` numbers, the exact integrals of that over u. Finite and not negative; a
     /// pixel with 0 is not corrected by it. Where a pixel's samples see several points, the mean of their integrals.
     pub known_integrals: &'a [f32],
-    /// The pixels that the arrays hold, in all frames; all, if all four numbers are 0. Numbers of pixels count these
-    /// alone.
+    /// The pixels that the arrays hold, in all frames; all, if all four numbers are 0. Only these have numbers there;
+    /// results are numbered among those wanted.
     pub given: Rectangle,
     /// The pixels that are estimated; all that are given, if all four numbers are 0. Every window that has one of them
     /// must be given whole: [`Image::needed`].

@@ -81,7 +81,7 @@ pub struct Table<I, S, K = Portable> {
 }
 
 impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
-    /// Takes up memory that a table of this state has used.
+    /// Takes up the memory that a table of this state has used, all of it: its length says where things are.
     ///
     /// Errors: [`Error::Memory`] if it is too small for the items, [`Error::Range`] for a state that no table has. The
     /// contents are not checked: if they are not what that table left there, draws are still of items that exist, but
