@@ -1,9 +1,9 @@
 // What the program prints: losses of networks trained by each method, or errors of the methods' gradients.
 #pragma once
 #include "trainer.hpp"
-#include <chrono>
 #include <memory>
 #include <cstdio>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -25,7 +25,7 @@ inline void write_pictures(const std::string &prefix, const Picture &picture, co
 
 inline double decibels(double squared_error) { return -10.0 * std::log10(squared_error); }
 
-// method,seed,step,seconds,loss,psnr: the seconds are those of the steps, without evaluating the whole picture.
+// method,seed,step,seconds,loss,psnr: processor seconds of the steps, without evaluating the whole picture.
 inline void compare_training(const Picture &picture, const Options &options)
 {
     const std::vector<float> target = targets(picture);
@@ -45,12 +45,12 @@ inline void compare_training(const Picture &picture, const Options &options)
             double seconds = 0.0, loss = 0.0;
             std::uint32_t step = 0;
             for (std::uint32_t record = 1; record <= options.records; ++record) {
-                const auto start = std::chrono::steady_clock::now();
+                const std::clock_t start = std::clock();
                 for (; step < std::uint64_t(options.steps) * record / options.records; ++step) {
                     trainer.estimate(sampler, true);
                     trainer.step(1.0f - float(step) / float(options.steps));
                 }
-                seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+                seconds += double(std::clock() - start) / CLOCKS_PER_SEC;
                 trainer.evaluate(output);
                 loss = mean_squared_error(output, target);
                 if (!std::isfinite(loss))
