@@ -5,7 +5,7 @@
 // differences.
 //
 // A call that fails throws noisefloor::error. With NOISEFLOOR_NO_EXCEPTIONS defined, or exceptions turned off in the
-// compiler, the same functions return noisefloor::result<T>, or a status, instead: see `returned`.
+// compiler, the same functions return a noisefloor::result<T> instead: see `returned`.
 #ifndef NOISEFLOOR_HPP
 #define NOISEFLOOR_HPP
 

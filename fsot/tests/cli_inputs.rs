@@ -48,7 +48,10 @@ fn devices_without_end_are_told_by_their_first_bytes() {
             (format!("{points} --density {device}"), none),
             (format!("{points} --classes {device}"), "not a class file: it is not text"),
             (format!("{points} --checkpoint {device}"), "a checkpoint is read again, so it must be a file"),
-            (format!("fsot measure --scenes . {device}"), "no sampler's table (.bin), tile (.nft) or points"),
+            (
+                format!("fsot measure --scenes . {device}"),
+                "no sampler's table (.bin), tile (.nft) or `noisefloor-points`",
+            ),
             (format!("fsot stipple {device} -n 9 --out s.png"), none),
             (format!("fsot place -n 9 --map {device} --out o.csv"), none),
         ] {

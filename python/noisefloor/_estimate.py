@@ -135,13 +135,13 @@ def image_estimate(
         surfaces: integers of shape (height, width), frames as u: only pixels with the same number share fits.
         factors: shape (height, width), with `channels` (height, width, c), frames as u, at least 0: what a pixel's
             values are proportional to, an albedo say.
-        known: of f's shape: what each sample would be with nothing in the way.
+        known: of f's shape: what each sample would be with nothing in the way; not for "k_fold".
         known_integrals: of `factors`' shape, at least 0: the exact integrals of that.
         order, estimator, dims, slices, channels: as for `estimate`; "robust", "leave_one_out" or "k_fold".
         edges: where two coordinates that pick a point of a light begin, counted from 1; 0: nowhere. With 4 and more
             samples fits then follow shadows' edges in them. "robust" and "k_fold" use it.
         stratified: whether each pixel's points are, `Sampler`'s say.
-        window: width and height of the windows that share a fit, 1 to 32 pixels.
+        window: width and height of the windows that share a fit, 1 to 32 pixels; over all frames at most 1,024.
         stride: pixels from one window to the next; None: half of a window.
         threads: how many share the rows of pixels; the result has the same bits.
 

@@ -14,7 +14,7 @@ class Sampler:
     """The random numbers of a renderer: for any pixel and sample, in any order, with the least visible error.
 
     The samples of a pixel are one sequence without end, best at 1, 2, 4, 8, ... samples. Each decision of a path (lens,
-    light, ...) has a domain of its own, unrelated to others.
+    light, ...) has a domain of its own, unrelated to others but at numbers 0 and 1.
 
     Args:
         frame: 0 to 2**32 - 1; frames are unrelated. For frames that are averaged leave it, and let `first` count on.
@@ -92,7 +92,8 @@ class QMCEngine:
 
     Args:
         d: dims, 1 to 4. In 2 it is as good as `scipy.stats.qmc.Sobol`; in more that is the better engine.
-        seed: 0 to 2**32 - 1; sequences of different seeds are unrelated. None: another one each time.
+        seed: 0 to 2**32 - 1; sequences of different seeds are unrelated, but for the first two points: one of 1,024
+            pairs. None: another one each time.
     """
 
     def __init__(self, d: int, *, seed: int | None = None) -> None:

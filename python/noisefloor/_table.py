@@ -29,7 +29,8 @@ class Table:
     Args:
         n: how many items, 1 to 2**32 - 1.
         importance: shape (n,), finite, at least 0 and not all 0; None makes all 1.
-        uniform_fraction: the part of draws that are uniform, 0 to 1. No weight is above 1 / uniform_fraction.
+        uniform_fraction: the part of draws that are uniform, 0 to 1. Weights are at most 1 / uniform_fraction,
+            but of "distinct".
         seed: of the table's own random numbers, 0 to 2**64 - 1. The same by default, so that a program does the same
             each time: tables that are to differ need seeds that do.
     """

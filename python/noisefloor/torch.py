@@ -32,12 +32,13 @@ class ImportanceBatchSampler(Sampler):
             index, weight = sampler.batch()          # of the batch that the loader has just handed over
             logits = model(x)
             logits.retain_grad()
+            optimizer.zero_grad()
             (weight * cross_entropy(logits, y, reduction="none")).mean().backward()
             optimizer.step()
-            sampler.update_from(logits)              # how large each item's gradient was
+            sampler.update_from(logits)
 
-    The first epoch visits every item once, with weights of 1; its last batch is filled up with items from its start.
-    Later ones draw with replacement. An epoch counts once `batch` was called for all of its batches.
+    Warm-up visits every item once, with weights of 1; its last batch is filled up with items from its start. What
+    follows draws with replacement. An epoch counts once `batch` was called for all of its batches.
 
     In data-parallel training every process makes the same sampler, after `init_process_group`, and gets its part of
     each batch; what `update` is told is gathered, so that all have the same table. Gradients are averaged over
@@ -50,7 +51,7 @@ class ImportanceBatchSampler(Sampler):
         warmup: "epoch": each item once before any is drawn by importance; None: importances begin as 1.
         uniform_fraction: the part of draws that are uniform, 0 to 1; with one technique no weight is above
             1 / uniform_fraction.
-        momentum: 0 to 1: of an item's importance, from one visit to the next; none in the first epoch.
+        momentum: 0 to 1: of an item's importance, from one visit to the next; none in warm-up.
         techniques: 1 to 16 tables; more than 1 is optimal multiple importance sampling of the output's derivatives.
             Even, a divisor of the batch of all processes, and at most twice as many as outputs. Weights are then
             slightly biased and may be negative.

@@ -57,7 +57,7 @@ def _child(domain, key):
 
 def draw(domain, x, y, first, second=False, scrambled=False, few=False):
     """Two numbers of nf_sampler_draw(), of four the second two: for arrays of domains, pixels (hashed, if white) and
-    reversed indices. With `few`, where all of these are below 2^BITS."""
+    reversed indices. With `few`, where all indices are below 2^BITS."""
     random = domain + x * 0x2C1B3C6D + y * 0x297A2D39
     random = (random ^ (random >> 15)) * 0x735A2D97
     random ^= random >> 15

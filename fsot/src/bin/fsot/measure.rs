@@ -26,7 +26,7 @@ pub(crate) struct Args {
     /// Point sets (text, CSV or JSON) and tiles (.nft)
     #[arg(required_unless_present = "scenes", value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Judge samplers (tables .bin, tiles .nft, files of points) in this folder's tables of rendered scenes
+    /// Judge samplers (tables .bin, tiles .nft, `noisefloor-points`) in this folder's tables of rendered scenes
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["prefix", "size", "quick", "integrands", "ema"])]
     scenes: Option<PathBuf>,
     /// Print the error against the number of points taken from the start, averaged over the files

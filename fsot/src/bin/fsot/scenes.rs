@@ -224,7 +224,7 @@ fn tile(path: &Path) -> Result<Plane> {
 
 /// A file that begins with `noisefloor-points WIDTH HEIGHT SAMPLES DIMS`.
 fn points(path: &Path) -> Result<Plane> {
-    const NONE: &str = "no sampler's table (.bin), tile (.nft) or points";
+    const NONE: &str = "no sampler's table (.bin), tile (.nft) or `noisefloor-points`";
     let refuse = || Err(Error::Input(format!("{} is {NONE}", path.display())));
     let (numbers, values) = read::floats(path, POINTS, NONE)?;
     let [width, height, samples, 2] = numbers[..] else { return refuse() };
