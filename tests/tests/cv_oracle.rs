@@ -376,7 +376,7 @@ fn constant_channels() {
     }
 }
 
-/// (4.3): the estimate of the luminance, spread over the channels as the plain mean is.
+/// Section 4.3: the estimate of the luminance, spread over the channels as the plain mean is.
 #[test]
 fn luminance_ratio() {
     let (u, red) = noisy(48, 2, 950);

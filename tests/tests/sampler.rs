@@ -277,15 +277,14 @@ fn half_planes_vanish_through_a_filter() {
     let blur = Blur::new(table::SIZE as usize);
     for (n, most) in [(1, 0.145), (4, 0.082), (16, 0.052)] {
         let mut rng = SplitMix64::new(7);
-        let points: Vec<Vec<[f32; 2]>> =
-            (0..PIXELS).map(|pixel| (0..n).map(|i| root(pixel).moved(0, 0, i).draw()).collect()).collect();
+        let points: Vec<[f32; 2]> = first(n).collect();
         let (mut sum, mut white) = (0.0, 0.0);
         for _ in 0..400 {
             let plane = Planar::half_plane(&mut rng);
             let [mean, variance] = plane.integral();
             let value = |point: &[f32; 2]| plane.at(point.map(f64::from)) - mean;
-            let error = |points: &Vec<[f32; 2]>| points.iter().map(value).sum::<f64>() / f64::from(n);
-            let image = blur.apply(&points.iter().map(error).collect::<Vec<_>>());
+            let error = |points: &[[f32; 2]]| points.iter().map(value).sum::<f64>() / f64::from(n);
+            let image = blur.apply(&points.chunks(n as usize).map(error).collect::<Vec<_>>());
             sum += image.iter().map(|error| error * error).sum::<f64>() / f64::from(PIXELS);
             white += variance / f64::from(n) * blur.of_noise();
         }

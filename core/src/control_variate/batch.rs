@@ -48,7 +48,8 @@ fn size(config: &Config, plan: &Plan, n: usize) -> Option<usize> {
 /// # Errors
 /// - [`Error::Range`]: a field of `config`, a coordinate outside [0, 1], array lengths that do not belong together, or
 ///   more samples than `u32::MAX`, in `f32` 2^25 (2^22 where they are [added one by one](Accumulator::add)).
-/// - [`Error::NotFinite`]: a NaN or infinity among the samples, unless `config` says to skip them, or the integrals.
+/// - [`Error::NotFinite`]: a NaN or infinity among the control functions' integrals, or among the samples, unless
+///   `config` says to skip them.
 /// - [`Error::NoSamples`]: no samples, or none left.
 /// - [`Error::Memory`]: `workspace` is shorter than [`workspace_len`] says.
 /// - [`Error::Unsupported`]: options that exclude each other.

@@ -52,7 +52,7 @@ def _mix(h):
 
 def _child(domain, key):
     h = _mix((mi.UInt32(key) * 0x9E3779B9) ^ domain)
-    return dr.select(h == 0, mi.UInt32(0x9E3779B9), h)
+    return dr.select(h == 0, mi.UInt32(0x2C9277B5), h)
 
 
 def draw(domain, x, y, first, second=False, scrambled=False, few=False):
