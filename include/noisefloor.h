@@ -13,7 +13,7 @@
  *    destroyed. An object must not be moved or copied while it is in use, unless its description says otherwise. The
  *    bytes of one in caller memory mean something only to the library file that made them, which alone may change
  *    them: NF_ERR_STATE tells memory that holds no object, not an object whose bytes were changed. Tables are kept, and
- *    sent to other builds and machines, with nf_table_save().
+ *    sent to other builds and machines, with nf_table_save(). Calls take up to 40 kB of stack (x86-64).
  *  - Threads: no locks, and no shared state but a cached answer of the processor's. Any number of threads may read an
  *    object; one at a time may write it.
  *  - Arithmetic: IEEE 754, rounding to nearest. Where the host flushes subnormal numbers to zero, values above 1e-30

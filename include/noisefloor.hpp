@@ -464,7 +464,7 @@ inline returned<nf_estimate> estimate(const nf_cv_config &how, const samples &wh
     return detail::finish(code, out);
 }
 
-// nf_cv_estimate() of as many integrals as `out` has room for, from as many samples of each.
+// nf_cv_estimate() of as many integrals as `out` has room for, at least one, from as many samples of each.
 inline returned<void> estimate_each(const nf_cv_config &how, const samples &what, memory workspace,
                                     span<nf_estimate> out)
 {
@@ -673,7 +673,7 @@ public:
         return detail::finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, out.data(), nullptr)
                                    : NF_ERR_RANGE);
     }
-    // out[integrals * techniques]
+    // out[integrals * techniques], an integral after the other
     returned<void> alpha(span<float> out, solver how = solver::ridge, float ridge = 0.0f) const
     {
         const bool fits = techniques_ > 0 && out.size() % techniques_ == 0 && out.size() / techniques_ == integrals_;
@@ -1054,7 +1054,9 @@ inline returned<void> gradient(span<const float> derivatives, std::uint32_t tech
 {
     const bool whole = techniques > 0 && out.size() % techniques == 0;
     const std::size_t rows = whole ? out.size() / techniques : 0;
-    const std::uint32_t outputs = whole ? detail::columns(derivatives.size(), rows) : 0;
+    // Of no rows as many as any split takes.
+    const bool none = derivatives.empty() && rows == 0;
+    const std::uint32_t outputs = !whole ? 0 : none ? techniques : detail::columns(derivatives.size(), rows);
     return noisefloor::detail::finish(
         outputs > 0 ? nf_importance_gradient(derivatives.data(), detail::number(rows), outputs,
                                              static_cast<std::uint32_t>(how), techniques, out.data())

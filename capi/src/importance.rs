@@ -101,7 +101,7 @@ pub unsafe extern "C" fn nf_importance_squared_error(
 /// gradient[rows * outputs]: dL/dm, finite. Node k belongs to group k % groups, groups being techniques with
 /// NF_NODES_NORM and half as many with NF_NODES_SIGN: importance[g] is the norm over group g, or importance[2 g],
 /// importance[2 g + 1] those of max(gradient, 0) and max(-gradient, 0). techniques: 1..NF_MIS_MAX_TECHNIQUES.
-/// importance[rows * techniques]: outputs, at most the largest finite float.
+/// importance[rows * techniques]: outputs, a row for each item, at most the largest finite float.
 ///
 /// NF_ERR_RANGE: split, techniques, or fewer outputs than groups; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]

@@ -107,9 +107,10 @@ pub unsafe extern "C" fn nf_omis_add(
 /// wanted.
 ///
 /// solver: NF_OMIS_*. ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for
-/// the default 2. It adds ridge (tr(N A) - 1) / n N^-1 to A, N being the counts and n the samples, and at least 1e-8
-/// tr(N A) N^-1. estimate[integrals], alpha[integrals * techniques]: outputs; one beyond the range of float becomes the
-/// largest finite float. alpha is for nf_mis_optimal_contribution, of NF_OMIS_PROGRESSIVE the current batch's.
+/// the default 2. It adds ridge (tr(N A) - 1) / n N^-1 to A, here that of one round, A / R, N being the counts and n
+/// the samples, and at least 1e-8 tr(N A) N^-1. estimate[integrals], alpha[integrals * techniques], of integral p and
+/// technique j at p * techniques + j: outputs; one beyond the range of float becomes the largest finite float. alpha is
+/// for nf_mis_optimal_contribution, of NF_OMIS_PROGRESSIVE the current batch's.
 ///
 /// NF_ERR_NULL: no object, or nothing wanted; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge;
 /// NF_ERR_NO_SAMPLES.

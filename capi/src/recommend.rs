@@ -1,7 +1,7 @@
 //! Which estimator and which sampler to use.
 
 use crate::convert;
-use crate::cv::nf_cv_config;
+use crate::cv::{NF_PRECISION_F32, NF_PRECISION_F64, nf_cv_config};
 use crate::status::*;
 use crate::wrong::pick;
 use noisefloor_core::recommend::{Method, Sampling, recommend};
@@ -44,7 +44,7 @@ pub struct nf_recommendation {
     /// The cost of a sample, in nanoseconds, below which more samples of the plain mean lower the error further in the
     /// same time: for overlapping windows twice that of others. Infinite if no fit pays at any cost.
     pub pays_from: f32,
-    /// How to estimate. `channels` is 1: set your own. `stride` is all dims.
+    /// How to estimate, as precisely as can be. `channels` is 1: set your own. `stride` is all dims.
     pub config: nf_cv_config,
 }
 
@@ -75,6 +75,7 @@ pub unsafe extern "C" fn nf_recommend(
             channels: 1,
             stratified: u32::from(of.config.stratified),
             stride: dims,
+            precision: if cfg!(feature = "double") { NF_PRECISION_F64 } else { NF_PRECISION_F32 },
             ..Default::default()
         };
         let found = nf_recommendation {

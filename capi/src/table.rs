@@ -12,8 +12,9 @@ use noisefloor_core::minibatch::table::{self, ARITY, MAX_BLOCKS, State, Table};
 /// The importances of the items of a data set, from which minibatches are drawn (Algorithm 3).
 ///
 /// Item i is drawn with probability p_i = (1 - d) q_i / sum q + d / N: q_i is its importance, d the uniform fraction,
-/// .2 unless set. No weight 1 / (N p_i) is then above 1 / d. Where all importances are 0 draws are uniform, or
-/// NF_ERR_NO_SAMPLES if d is 0. The struct refers to the memory its items live in: keep one copy.
+/// .2 unless set. No weight 1 / (N p_i) is then above 1 / d. Draws and weights round alike; where d is 0, an item
+/// beside one 2^53 times as important is lost. Where all importances are 0 draws are uniform, or NF_ERR_NO_SAMPLES if d
+/// is 0. The struct refers to the memory its items live in: keep one copy.
 #[repr(C)]
 #[allow(non_camel_case_types)]
 pub struct nf_table {
@@ -126,8 +127,8 @@ pub unsafe extern "C" fn nf_table_draw_stratified(
 }
 
 /// Draws `batch` different items, the k-th being item i with probability c_i = ((1 - d) q_i / sum q + d / N) / (1 - d
-/// (k - 1) / N), the sum being that of the items not yet drawn. weight: (1 / c_k + batch - k) / N, at most
-/// 1 / d + (batch - 1) / N, for the same unbiased estimate (Raj 1956).
+/// (k - 1) / N), the sum being that of the items not yet drawn, d 1 where it is 0. weight: (1 / c_k + batch - k) / N,
+/// at most 1 / d + (batch - 1) / N, for the same unbiased estimate (Raj 1956).
 ///
 /// The table is written meanwhile, and the same afterwards. A draw takes the time of some ten updates, or, where a few
 /// items have nearly all of the sum, time for every item.
@@ -243,7 +244,7 @@ pub unsafe extern "C" fn nf_table_save(table: *const nf_table, saved: *mut c_voi
 
 /// A table as nf_table_save wrote it, in memory as for nf_table_init: it draws the same items from the same generator.
 ///
-/// NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: the bytes; NF_ERR_MEMORY.
+/// NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: the bytes; NF_ERR_MEMORY; NF_ERR_RANGE: len.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_load(
     table: *mut nf_table,
@@ -331,12 +332,12 @@ pub(crate) unsafe fn check_table(table: &nf_table) -> Result<(), Wrong> {
 
 /// How many importances and sums a table's memory has.
 fn lengths(table: &nf_table) -> Result<(usize, usize), Wrong> {
-    rule((0.0..=1.0).contains(&table.uniform_fraction), c"uniform_fraction must be 0 to 1")?;
     let is_table = table.magic == MAGIC && !table.importance.is_null() && table.blocks as usize <= MAX_BLOCKS;
     ensure(is_table, NO_TABLE)?;
     let (importance, sums) = parts(table.blocks).ok_or(NO_TABLE)?;
     // nf_table_init put the sums right behind: where that no longer holds, pointers or lengths have been changed since.
     ensure(table.sums.addr() == table.importance.addr().wrapping_add(importance), NO_TABLE)?;
+    rule((0.0..=1.0).contains(&table.uniform_fraction), c"uniform_fraction must be 0 to 1")?;
     Ok((importance / size_of::<f32>(), sums / size_of::<i64>()))
 }
 

@@ -17,7 +17,7 @@ extern "C" {
 #define NF_CV_ROBUST 0
 // Estimator: least squares on its own samples (Alg. 1). Cheapest; bias O(1/n); wants several samples per term.
 #define NF_CV_LEAST_SQUARES 1
-// Estimator: each sample corrected by a ridge fit to all others. Exactly unbiased; not for streaming.
+// Estimator: each sample corrected by a ridge fit to all others. Exactly unbiased, nearly with `controls`; no streams.
 #define NF_CV_LEAVE_ONE_OUT 2
 #define NF_CV_K_FOLD 3 // Estimator: each fold corrected by a robust fit to the other folds (4.2.6). Exactly unbiased.
 // Estimator: gradient descent on its own samples (Alg. 2). Biased; see nf_cv_gradient_descent().
@@ -38,15 +38,15 @@ extern "C" {
 #define NF_RIDGE_AUTO (-1.0f) // For `ridge`: the best of a few by leave-one-out errors; biases NF_CV_LEAVE_ONE_OUT.
 
 #define NF_COLOR_PER_CHANNEL 0 // Each channel is regressed on its own, with one factorisation. The default.
-// Rec. 709 luminance is regressed and scales the plain mean of 3 channels (section 4.3). Standard errors are the
-// luminance's, scaled alike: they leave out what the colour is uncertain by.
+// Rec. 709 luminance is regressed and scales the plain mean of the channels, which must be 3 (section 4.3). Standard
+// errors are the luminance's, scaled alike: they leave out what the colour is uncertain by.
 #define NF_COLOR_LUMINANCE_RATIO 1
 
 #define NF_NONFINITE_ERROR 0 // A NaN or infinite sample is NF_ERR_NOT_FINITE. The default.
 // A NaN or infinite sample is left out and not counted; biased unless such samples would have been average ones.
 #define NF_NONFINITE_SKIP 1
 
-// Precision: double. The default; NF_ERR_UNSUPPORTED where the library was built for float alone.
+// Precision: double. The default; NF_ERR_UNSUPPORTED, of arrays and images too, in a library for float alone.
 #define NF_PRECISION_F64 0
 #define NF_PRECISION_F32 1 // Precision: float, for targets without double hardware.
 
@@ -54,7 +54,7 @@ extern "C" {
 // `nf_cv_config config = {.dims = 2, .order = 2, .channels = 1};` is the robust estimator over 2 coordinates.
 typedef struct nf_cv_config {
     uint32_t dims; // Coordinates of a sample that are regressed, 1 to 16.
-    uint32_t order; // Largest total degree, 0 to 7; 0 is the plain mean. nf_cv_terms() may not exceed 136.
+    uint32_t order; // Largest total degree, 0 to 7; at 0 `controls` alone correct. nf_cv_terms() may not exceed 136.
     uint32_t channels; // Values of a sample, 1 to 4.
     uint32_t estimator; // NF_CV_*
     uint32_t basis; // NF_BASIS_*
@@ -80,8 +80,8 @@ typedef struct nf_cv_config {
     uint32_t color; // NF_COLOR_*
     // Runs of samples, in order, for NF_CV_K_FOLD (images have two) and streaming NF_CV_ROBUST: 2 to 16; 0 means 4.
     uint32_t folds;
-    // Ridge strength per sample, raised to 1e-12, in float 1e-5; 0, and NF_RIDGE_AUTO of images, NF_CV_INCREMENTAL and
-    // streaming NF_CV_K_FOLD: the default. Gradient descent, and NF_CV_ROBUST of one integral, ignore it.
+    // Ridge strength per sample, above 0, raised to 1e-12, in float 1e-5; 0, and NF_RIDGE_AUTO of images,
+    // NF_CV_INCREMENTAL and streaming NF_CV_K_FOLD: the default. Descent, and NF_CV_ROBUST of one integral, ignore it.
     float ridge;
 } nf_cv_config;
 
@@ -92,7 +92,7 @@ typedef struct nf_cv_samples {
     const float *f; // n rows of `channels` floats.
     size_t n; // Samples of each integral; below 2^32, of an image in all. Of several, arrays hold one after the other.
     const float *controls; // n rows of `controls` floats: functions of known integral at the samples (4.18).
-    const float *control_integrals; // The integrals of the `controls` functions.
+    const float *control_integrals; // The integrals of the `controls` functions, finite.
     // For nf_cv_image_estimate(), n rows of `channels` finite floats: what f would be with nothing in the way, the
     // unshadowed light. Pixels are then also corrected by how far its mean is from `known_integrals`, as far as their
     // neighbours follow it.
@@ -103,7 +103,7 @@ typedef struct nf_cv_samples {
     const float *known_integrals;
 } nf_cv_samples;
 
-// The number of terms of a regression, constant included; 0 for a configuration that is NULL or out of range.
+// The number of terms of a regression, constant included; 0 for NULL, and what nf_check() refuses but precision.
 uint32_t nf_cv_terms(const nf_cv_config *config);
 
 // An estimate of an integral over primary sample space.
@@ -112,19 +112,19 @@ typedef struct nf_estimate {
     // Each mean's standard error; infinite of one sample, where a ratio's luminances cancel, and, with `gain`, of
     // least squares from no more samples than terms.
     float std_error[4];
-    uint32_t samples; // Samples used.
+    uint32_t samples; // Samples used; 2^32 - 1 if there are more.
     float gain; // Estimated variance relative to the plain mean's, averaged over the channels; 1 is no gain.
 } nf_estimate;
 
 // Bytes of workspace for n samples of each integral, or fewer; never less for more. 0 where nf_check() refuses,
-// options exclude each other, the solver or a library for float alone takes fewer samples, or no memory is enough.
+// the solver or a library for float alone takes fewer samples, or no memory is enough.
 size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
 // Estimates `integrals` integrals from `samples->n` samples of each, apart from each other: out[integrals]. Nothing of
 // the workspace, nf_cv_workspace_size() bytes, is kept.
 // NF_ERR_RANGE: the configuration, a coordinate, more samples than the solver takes, or a size that no memory has;
-// NF_ERR_NOT_FINITE: a sample; NF_ERR_NO_SAMPLES; NF_ERR_MEMORY: the workspace; NF_ERR_UNSUPPORTED: options that
-// exclude each other, `known` and its integrals, or of several integrals `controls` and NF_NONFINITE_SKIP.
+// NF_ERR_NOT_FINITE: a sample; NF_ERR_NO_SAMPLES; NF_ERR_MEMORY: the workspace; NF_ERR_UNSUPPORTED: what nf_check()
+// says excludes each other, `known` and its integrals, or of several integrals `controls` and NF_NONFINITE_SKIP.
 nf_status nf_cv_estimate(const nf_cv_config *config, const nf_cv_samples *samples, size_t integrals, void *workspace,
     size_t bytes, nf_estimate *out);
 
@@ -137,7 +137,8 @@ typedef struct nf_cv_rectangle {
 } nf_cv_rectangle;
 
 // The pixels of an image, or of a part of one, and what is known of them. All zero but width and height: nothing.
-// Pixel (x, y) of frame t has the number (t height + y) width + x.
+// In arrays pixel (x, y) of frame t has the number (t height + y) width + x, where x, y, width and height are those
+// within `given` for inputs and within `wanted` for outputs.
 typedef struct nf_cv_image {
     uint32_t width; // Pixels in a row.
     uint32_t height; // Rows.
@@ -157,11 +158,11 @@ typedef struct nf_cv_image {
     // at least 0, and not dependent on its own samples; 0 counts as 1. For textures of which all samples of a pixel
     // see the same; pixels near 0 beside others are better kept apart by `surfaces`.
     const float *factors;
-    // The pixels that all arrays hold, in all frames, and that count, at most 2^30 - 1; all zero: all of the image.
+    // The pixels that input arrays hold, in all frames, and that count, at most 2^30 - 1; all zero: all of the image.
     // Without `wanted` whole windows.
     nf_cv_rectangle given;
-    // The pixels to estimate, of which every window must be given whole: see nf_cv_image_needed(). All zero: all that
-    // are given. Parts that are estimated apart, by threads say, have the bits of the whole.
+    // The pixels to estimate, in all frames, of which every window must be given whole: see nf_cv_image_needed(). All
+    // zero: all that are given. Parts that are estimated apart, by threads say, have the bits of the whole.
     nf_cv_rectangle wanted;
 } nf_cv_image;
 
@@ -171,23 +172,24 @@ typedef struct nf_cv_image {
 nf_status nf_cv_image_needed(const nf_cv_image *image, nf_cv_rectangle *out);
 
 // Bytes of workspace that nf_cv_image_estimate() needs for `samples->n` samples in each pixel, more with `known`; 0 as
-// for nf_cv_workspace_size(), and for an image that nf_check() refuses. No array is read.
+// for nf_cv_workspace_size(), and for what is refused there. No array is read.
 size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image *image, const nf_cv_samples *samples);
 
-// Estimates the pixels of an image from `samples->n` samples in each: out[wanted pixels]. Pixels of one window and
-// surface share a fit, which follows integrands that change across the window; each pixel is corrected by a fit to the
-// others' samples (4.3.6), even from one sample. Computed in float.
+// Estimates the pixels of an image from `samples->n` samples in each: out[wanted pixels * frames]. Pixels of one
+// window and surface share a fit, which follows integrands that change across the window; each pixel is corrected by a
+// fit to the others' samples (4.3.6), even from one sample. Computed in float.
 //
 // NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
-// they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and a `ridge` are exactly
-// unbiased for independent samples. Groups of fewer pixels than 3 plus the window's axes stay at their mean; with
-// several samples NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. One sample in each pixel cannot tell a texture: say it
-// by `surfaces` or `factors`. With one, or `stratified`, std_error is the estimates' spread about a linear trend.
+// they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and, without `known`, a `ridge`
+// are exactly unbiased for independent samples. Groups of fewer pixels than 3 plus the window's axes keep their
+// mean; with several samples NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. One sample in each pixel tells no texture:
+// say it by `surfaces` or `factors`. With one, or `stratified`, std_error is the estimates' spread about a trend.
 //
-// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
-// to what is left of it, with order 0 between the mean and what is known; NF_CV_K_FOLD is unsupported.
-// NF_ERR_UNSUPPORTED: other estimators and solvers, `controls`, NF_NONFINITE_SKIP, luminance ratio; NF_ERR_RANGE also
-// for the image, negative factors or integrals, and `known` without integrals; else as for nf_cv_estimate().
+// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST without a `ridge` chooses
+// among fits to f and to what is left of it, with order 0 between the mean and what is known.
+// NF_ERR_UNSUPPORTED: other estimators and solvers, `controls`, NF_NONFINITE_SKIP, luminance ratio, `known` with
+// NF_CV_K_FOLD; NF_ERR_RANGE also for the image, negative factors or integrals, and `known` without integrals or they
+// without it; NF_ERR_MEMORY also for 2^32 samples and more; else as for nf_cv_estimate().
 nf_status nf_cv_image_estimate(const nf_cv_config *config, const nf_cv_image *image, const nf_cv_samples *samples,
     void *workspace, size_t bytes, nf_estimate *out);
 
@@ -199,9 +201,9 @@ nf_status nf_cv_image_estimate(const nf_cv_config *config, const nf_cv_image *im
 typedef struct nf_cv_descent {
     uint32_t optimizer; // NF_OPTIMIZER_*
     uint32_t iterations; // Steps, at most 2^20; by default half as many as samples, 8 to 128.
-    // Length of a step: for Adam in standard deviations of the values (.05), else over the largest curvature (1).
+    // Of a step, at least 0: for Adam in standard deviations of the values (.05), else over the largest curvature (1).
     float learning_rate;
-    float momentum; // Below 1; 0 means .5, for Adam .9. Plain steps have none.
+    float momentum; // At least 0, below 1; 0 means .5, for Adam .9. Plain steps have none.
 } nf_cv_descent;
 
 // nf_cv_estimate() of one integral by NF_CV_GRADIENT_DESCENT, which `estimator` must be, from a start: `coefficients`
@@ -272,7 +274,8 @@ typedef struct nf_recommendation {
     // The cost of a sample, in nanoseconds, below which more samples of the plain mean lower the error further in the
     // same time: for overlapping windows twice that of others. Infinite if no fit pays at any cost.
     float pays_from;
-    nf_cv_config config; // How to estimate. `channels` is 1: set your own. `stride` is all dims.
+    // How to estimate, as precisely as can be. `channels` is 1: set your own. `stride` is all dims.
+    nf_cv_config config;
 } nf_recommendation;
 
 // Which estimator, order and tile to use for `spp` samples per pixel of `dims` coordinates, both at least 1

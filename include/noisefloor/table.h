@@ -17,8 +17,9 @@ extern "C" {
 // The importances of the items of a data set, from which minibatches are drawn (Algorithm 3).
 //
 // Item i is drawn with probability p_i = (1 - d) q_i / sum q + d / N: q_i is its importance, d the uniform fraction,
-// .2 unless set. No weight 1 / (N p_i) is then above 1 / d. Where all importances are 0 draws are uniform, or
-// NF_ERR_NO_SAMPLES if d is 0. The struct refers to the memory its items live in: keep one copy.
+// .2 unless set. No weight 1 / (N p_i) is then above 1 / d. Draws and weights round alike; where d is 0, an item
+// beside one 2^53 times as important is lost. Where all importances are 0 draws are uniform, or NF_ERR_NO_SAMPLES if d
+// is 0. The struct refers to the memory its items live in: keep one copy.
 typedef struct nf_table {
     float *importance; // q_i, of each item, to be read. In the memory given to nf_table_init.
     int64_t *sums; // The sums over them, behind.
@@ -52,8 +53,8 @@ nf_status nf_table_draw(const nf_table *table, nf_rng *rng, uint32_t batch, uint
 nf_status nf_table_draw_stratified(const nf_table *table, nf_rng *rng, uint32_t batch, uint32_t *index, float *weight);
 
 // Draws `batch` different items, the k-th being item i with probability c_i = ((1 - d) q_i / sum q + d / N) / (1 - d
-// (k - 1) / N), the sum being that of the items not yet drawn. weight: (1 / c_k + batch - k) / N, at most
-// 1 / d + (batch - 1) / N, for the same unbiased estimate (Raj 1956).
+// (k - 1) / N), the sum being that of the items not yet drawn, d 1 where it is 0. weight: (1 / c_k + batch - k) / N,
+// at most 1 / d + (batch - 1) / N, for the same unbiased estimate (Raj 1956).
 //
 // The table is written meanwhile, and the same afterwards. A draw takes the time of some ten updates, or, where a few
 // items have nearly all of the sum, time for every item.
@@ -88,7 +89,7 @@ nf_status nf_table_probabilities(const nf_table *table, const uint32_t *index, u
 nf_status nf_table_save(const nf_table *table, void *saved, size_t len);
 
 // A table as nf_table_save wrote it, in memory as for nf_table_init: it draws the same items from the same generator.
-// NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: the bytes; NF_ERR_MEMORY.
+// NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: the bytes; NF_ERR_MEMORY; NF_ERR_RANGE: len.
 nf_status nf_table_load(nf_table *table, void *memory, size_t bytes, const void *saved, size_t len);
 
 // What the processes of a data-parallel trainer, each with the table of its part of the data, must know of each
@@ -147,7 +148,7 @@ nf_status nf_importance_squared_error(const float *output, const float *target, 
 // gradient[rows * outputs]: dL/dm, finite. Node k belongs to group k % groups, groups being techniques with
 // NF_NODES_NORM and half as many with NF_NODES_SIGN: importance[g] is the norm over group g, or importance[2 g],
 // importance[2 g + 1] those of max(gradient, 0) and max(-gradient, 0). techniques: 1..NF_MIS_MAX_TECHNIQUES.
-// importance[rows * techniques]: outputs, at most the largest finite float.
+// importance[rows * techniques]: outputs, a row for each item, at most the largest finite float.
 // NF_ERR_RANGE: split, techniques, or fewer outputs than groups; NF_ERR_NOT_FINITE.
 nf_status nf_importance_gradient(const float *gradient, uint32_t rows, uint32_t outputs, uint32_t split,
     uint32_t techniques, float *importance);

@@ -75,6 +75,13 @@ static void checked(void)
     CHECK(strcmp(nf_check(NF_CHECK_CV_CONFIG, &config), "dims must be 1 to 16") == 0);
     config = make_config(7, 4, 1, NF_CV_ROBUST);
     CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, "136 terms");
+    config = make_config(2, 2, 1, NF_CV_ROBUST);
+    config.solver = NF_SOLVER_SQUARE_ROOT;
+    CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, "solver must not be the square root");
+    config.solver = NF_SOLVER_DUAL;
+    CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, NULL);
+    config.controls = 1;
+    CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, "solver must not be the dual");
     CHECK_NAMED(NF_CHECK_CV_CONFIG, NULL, "NULL");
     CHECK_NAMED(NF_CHECK_DIMS + 1, &config, "NF_CHECK_*");
     CHECK_NAMED(UINT32_MAX, NULL, "NF_CHECK_*");
@@ -165,6 +172,8 @@ static void ranges(void)
     REFUSED(config.color = 2, NF_ERR_RANGE);
     REFUSED(config.folds = 1, NF_ERR_RANGE);
     REFUSED(config.folds = 17, NF_ERR_RANGE);
+    REFUSED(config.solver = NF_SOLVER_SQUARE_ROOT, NF_ERR_UNSUPPORTED);
+    REFUSED(config.color = NF_COLOR_LUMINANCE_RATIO, NF_ERR_UNSUPPORTED);
     REFUSED(config.ridge = -0.5f, NF_ERR_RANGE);
     REFUSED(config.ridge = -2.0f, NF_ERR_RANGE);
     REFUSED(config.ridge = nan, NF_ERR_RANGE);

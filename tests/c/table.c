@@ -255,7 +255,6 @@ static void no_table(void)
     nf_rng_seed(&rng, 1);
     for (k = 0; k < 2; ++k) {
         memset(&table, k == 0 ? 0 : POISON, sizeof table);
-        table.uniform_fraction = 0.5f;
         if (k == 1)
             table.importance = value;
         CHECK_NAMED(NF_CHECK_TABLE, &table, "as nf_table_init() made them");

@@ -550,6 +550,9 @@ static void importances()
     SUCCEED(nf::importance::cross_entropy({}, {}, {}));
     SUCCEED(nf::importance::squared_error({}, {}, {}));
     SUCCEED(nf::importance::gradient({}, 1, {}));
+    SUCCEED(nf::importance::gradient({}, 4, {}));
+    SUCCEED(nf::importance::gradient({}, 4, {}, nf::importance::split::sign));
+    CHECK(CODE(nf::importance::gradient({}, 3, {}, nf::importance::split::sign)) == nf::status::range);
     CHECK(CODE(nf::importance::squared_error(logits, target, {})) == nf::status::range);
     std::uint32_t order[5], rest[3];
     SUCCEED(nf::shuffle(1, 5, 0, order));

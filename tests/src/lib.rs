@@ -1,6 +1,7 @@
 //! What the tests share: the oracle, the integrands, the statistics, and what the report measures too.
 
 pub mod continued;
+pub mod genz;
 pub mod gradients;
 pub mod integrands;
 pub mod legendre;

@@ -15,7 +15,7 @@ pub(super) type Best = f64;
 pub(super) type Best = f32;
 
 /// Bytes of workspace for n samples of each integral, or fewer; never less for more. 0 where nf_check() refuses,
-/// options exclude each other, the solver or a library for float alone takes fewer samples, or no memory is enough.
+/// the solver or a library for float alone takes fewer samples, or no memory is enough.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_workspace_size(config: *const nf_cv_config, n: usize) -> usize {
     let len = || {
@@ -31,8 +31,8 @@ pub unsafe extern "C" fn nf_cv_workspace_size(config: *const nf_cv_config, n: us
 /// the workspace, nf_cv_workspace_size() bytes, is kept.
 ///
 /// NF_ERR_RANGE: the configuration, a coordinate, more samples than the solver takes, or a size that no memory has;
-/// NF_ERR_NOT_FINITE: a sample; NF_ERR_NO_SAMPLES; NF_ERR_MEMORY: the workspace; NF_ERR_UNSUPPORTED: options that
-/// exclude each other, `known` and its integrals, or of several integrals `controls` and NF_NONFINITE_SKIP.
+/// NF_ERR_NOT_FINITE: a sample; NF_ERR_NO_SAMPLES; NF_ERR_MEMORY: the workspace; NF_ERR_UNSUPPORTED: what nf_check()
+/// says excludes each other, `known` and its integrals, or of several integrals `controls` and NF_NONFINITE_SKIP.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_estimate(
     config: *const nf_cv_config,

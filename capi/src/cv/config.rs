@@ -11,7 +11,7 @@ use noisefloor_core::control_variate::{Color, Config, Estimate, Estimator, NonFi
 pub const NF_CV_ROBUST: u32 = 0;
 /// Estimator: least squares on its own samples (Alg. 1). Cheapest; bias O(1/n); wants several samples per term.
 pub const NF_CV_LEAST_SQUARES: u32 = 1;
-/// Estimator: each sample corrected by a ridge fit to all others. Exactly unbiased; not for streaming.
+/// Estimator: each sample corrected by a ridge fit to all others. Exactly unbiased, nearly with `controls`; no streams.
 pub const NF_CV_LEAVE_ONE_OUT: u32 = 2;
 /// Estimator: each fold corrected by a robust fit to the other folds (4.2.6). Exactly unbiased.
 pub const NF_CV_K_FOLD: u32 = 3;
@@ -38,7 +38,7 @@ pub const NF_SOLVER_SQUARE_ROOT: u32 = 2;
 /// Solver: the n x n system of at most 4096 samples. Not for streaming, nor with `controls`.
 pub const NF_SOLVER_DUAL: u32 = 3;
 
-/// Precision: double. The default; NF_ERR_UNSUPPORTED where the library was built for float alone.
+/// Precision: double. The default; NF_ERR_UNSUPPORTED, of arrays and images too, in a library for float alone.
 pub const NF_PRECISION_F64: u32 = 0;
 /// Precision: float, for targets without double hardware.
 pub const NF_PRECISION_F32: u32 = 1;
@@ -50,8 +50,8 @@ pub const NF_NONFINITE_SKIP: u32 = 1;
 
 /// Each channel is regressed on its own, with one factorisation. The default.
 pub const NF_COLOR_PER_CHANNEL: u32 = 0;
-/// Rec. 709 luminance is regressed and scales the plain mean of 3 channels (section 4.3). Standard errors are the
-/// luminance's, scaled alike: they leave out what the colour is uncertain by.
+/// Rec. 709 luminance is regressed and scales the plain mean of the channels, which must be 3 (section 4.3). Standard
+/// errors are the luminance's, scaled alike: they leave out what the colour is uncertain by.
 pub const NF_COLOR_LUMINANCE_RATIO: u32 = 1;
 
 /// For `ridge`: the best of a few by leave-one-out errors; biases NF_CV_LEAVE_ONE_OUT.
@@ -65,7 +65,7 @@ pub const NF_RIDGE_AUTO: f32 = -1.0;
 pub struct nf_cv_config {
     /// Coordinates of a sample that are regressed, 1 to 16.
     pub dims: u32,
-    /// Largest total degree, 0 to 7; 0 is the plain mean. nf_cv_terms() may not exceed 136.
+    /// Largest total degree, 0 to 7; at 0 `controls` alone correct. nf_cv_terms() may not exceed 136.
     pub order: u32,
     /// Values of a sample, 1 to 4.
     pub channels: u32,
@@ -99,8 +99,8 @@ pub struct nf_cv_config {
     pub color: u32,
     /// Runs of samples, in order, for NF_CV_K_FOLD (images have two) and streaming NF_CV_ROBUST: 2 to 16; 0 means 4.
     pub folds: u32,
-    /// Ridge strength per sample, raised to 1e-12, in float 1e-5; 0, and NF_RIDGE_AUTO of images, NF_CV_INCREMENTAL and
-    /// streaming NF_CV_K_FOLD: the default. Gradient descent, and NF_CV_ROBUST of one integral, ignore it.
+    /// Ridge strength per sample, above 0, raised to 1e-12, in float 1e-5; 0, and NF_RIDGE_AUTO of images,
+    /// NF_CV_INCREMENTAL and streaming NF_CV_K_FOLD: the default. Descent, and NF_CV_ROBUST of one integral, ignore it.
     pub ridge: f32,
 }
 
@@ -114,13 +114,13 @@ pub struct nf_estimate {
     /// Each mean's standard error; infinite of one sample, where a ratio's luminances cancel, and, with `gain`, of
     /// least squares from no more samples than terms.
     pub std_error: [f32; 4],
-    /// Samples used.
+    /// Samples used; 2^32 - 1 if there are more.
     pub samples: u32,
     /// Estimated variance relative to the plain mean's, averaged over the channels; 1 is no gain.
     pub gain: f32,
 }
 
-/// The number of terms of a regression, constant included; 0 for a configuration that is NULL or out of range.
+/// The number of terms of a regression, constant included; 0 for NULL, and what nf_check() refuses but precision.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_terms(config: *const nf_cv_config) -> u32 {
     // SAFETY: the caller's pointer, checked there for NULL and alignment.

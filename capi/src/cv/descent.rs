@@ -25,9 +25,9 @@ pub struct nf_cv_descent {
     pub optimizer: u32,
     /// Steps, at most 2^20; by default half as many as samples, 8 to 128.
     pub iterations: u32,
-    /// Length of a step: for Adam in standard deviations of the values (.05), else over the largest curvature (1).
+    /// Of a step, at least 0: for Adam in standard deviations of the values (.05), else over the largest curvature (1).
     pub learning_rate: f32,
-    /// Below 1; 0 means .5, for Adam .9. Plain steps have none.
+    /// At least 0, below 1; 0 means .5, for Adam .9. Plain steps have none.
     pub momentum: f32,
 }
 

@@ -9,7 +9,8 @@ use crate::wrong::{Wrong, pick};
 use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Rectangle};
 
 /// The pixels of an image, or of a part of one, and what is known of them. All zero but width and height: nothing.
-/// Pixel (x, y) of frame t has the number (t height + y) width + x.
+/// In arrays pixel (x, y) of frame t has the number (t height + y) width + x, where x, y, width and height are those
+/// within `given` for inputs and within `wanted` for outputs.
 #[repr(C)]
 #[derive(Clone, Copy)]
 #[allow(non_camel_case_types)]
@@ -35,11 +36,11 @@ pub struct nf_cv_image {
     /// at least 0, and not dependent on its own samples; 0 counts as 1. For textures of which all samples of a pixel
     /// see the same; pixels near 0 beside others are better kept apart by `surfaces`.
     pub factors: *const f32,
-    /// The pixels that all arrays hold, in all frames, and that count, at most 2^30 - 1; all zero: all of the image.
+    /// The pixels that input arrays hold, in all frames, and that count, at most 2^30 - 1; all zero: all of the image.
     /// Without `wanted` whole windows.
     pub given: nf_cv_rectangle,
-    /// The pixels to estimate, of which every window must be given whole: see nf_cv_image_needed(). All zero: all that
-    /// are given. Parts that are estimated apart, by threads say, have the bits of the whole.
+    /// The pixels to estimate, in all frames, of which every window must be given whole: see nf_cv_image_needed(). All
+    /// zero: all that are given. Parts that are estimated apart, by threads say, have the bits of the whole.
     pub wanted: nf_cv_rectangle,
 }
 
@@ -75,7 +76,7 @@ pub unsafe extern "C" fn nf_cv_image_needed(image: *const nf_cv_image, out: *mut
 }
 
 /// Bytes of workspace that nf_cv_image_estimate() needs for `samples->n` samples in each pixel, more with `known`; 0 as
-/// for nf_cv_workspace_size(), and for an image that nf_check() refuses. No array is read.
+/// for nf_cv_workspace_size(), and for what is refused there. No array is read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_workspace_size(
     config: *const nf_cv_config,
@@ -92,21 +93,22 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
     len().ok().and_then(|len| len.checked_mul(size_of::<f32>())).unwrap_or(0)
 }
 
-/// Estimates the pixels of an image from `samples->n` samples in each: out[wanted pixels]. Pixels of one window and
-/// surface share a fit, which follows integrands that change across the window; each pixel is corrected by a fit to the
-/// others' samples (4.3.6), even from one sample. Computed in float.
+/// Estimates the pixels of an image from `samples->n` samples in each: out[wanted pixels * frames]. Pixels of one
+/// window and surface share a fit, which follows integrands that change across the window; each pixel is corrected by a
+/// fit to the others' samples (4.3.6), even from one sample. Computed in float.
 ///
 /// NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
-/// they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and a `ridge` are exactly
-/// unbiased for independent samples. Groups of fewer pixels than 3 plus the window's axes stay at their mean; with
-/// several samples NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. One sample in each pixel cannot tell a texture: say it
-/// by `surfaces` or `factors`. With one, or `stratified`, std_error is the estimates' spread about a linear trend.
+/// they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and, without `known`, a `ridge`
+/// are exactly unbiased for independent samples. Groups of fewer pixels than 3 plus the window's axes keep their
+/// mean; with several samples NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. One sample in each pixel tells no texture:
+/// say it by `surfaces` or `factors`. With one, or `stratified`, std_error is the estimates' spread about a trend.
 ///
-/// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
-/// to what is left of it, with order 0 between the mean and what is known; NF_CV_K_FOLD is unsupported.
+/// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST without a `ridge` chooses
+/// among fits to f and to what is left of it, with order 0 between the mean and what is known.
 ///
-/// NF_ERR_UNSUPPORTED: other estimators and solvers, `controls`, NF_NONFINITE_SKIP, luminance ratio; NF_ERR_RANGE also
-/// for the image, negative factors or integrals, and `known` without integrals; else as for nf_cv_estimate().
+/// NF_ERR_UNSUPPORTED: other estimators and solvers, `controls`, NF_NONFINITE_SKIP, luminance ratio, `known` with
+/// NF_CV_K_FOLD; NF_ERR_RANGE also for the image, negative factors or integrals, and `known` without integrals or they
+/// without it; NF_ERR_MEMORY also for 2^32 samples and more; else as for nf_cv_estimate().
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_estimate(
     config: *const nf_cv_config,

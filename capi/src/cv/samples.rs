@@ -17,7 +17,7 @@ pub struct nf_cv_samples {
     pub n: usize,
     /// n rows of `controls` floats: functions of known integral at the samples (4.18).
     pub controls: *const f32,
-    /// The integrals of the `controls` functions.
+    /// The integrals of the `controls` functions, finite.
     pub control_integrals: *const f32,
     /// For nf_cv_image_estimate(), n rows of `channels` finite floats: what f would be with nothing in the way, the
     /// unshadowed light. Pixels are then also corrected by how far its mean is from `known_integrals`, as far as their

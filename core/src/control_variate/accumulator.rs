@@ -59,8 +59,7 @@ impl<R: Real> Accumulator<R> {
     /// # Errors
     /// [`Error::Unsupported`] for what needs all samples at once, which are
     /// [`Estimator::LeaveOneOut`](super::Estimator::LeaveOneOut), [`Solver::Dual`](super::Solver::Dual), and
-    /// [`Ridge::Auto`] of least squares; for [`Solver::SquareRoot`](super::Solver::SquareRoot) of all else; and what
-    /// [`Config::terms`] finds.
+    /// [`Ridge::Auto`] of least squares; and what [`Config::terms`] finds.
     pub fn new(config: &Config) -> Result<Self, Error> {
         let shape = config.checked_shape()?;
         plan::check_stream(config)?;

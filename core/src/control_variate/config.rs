@@ -172,8 +172,7 @@ impl Config {
     /// Terms of the regression, constant included.
     ///
     /// # Errors
-    /// [`Error::Range`] if a field is out of range, [`Error::Unsupported`] for a luminance ratio of other than 3
-    /// channels. What solvers do not go with, estimates find.
+    /// [`Error::Range`] if a field is out of range, [`Error::Unsupported`] for options that exclude each other.
     pub fn terms(&self) -> Result<usize, Error> {
         Ok(1 + self.controls + self.checked_shape()?.columns())
     }
@@ -211,8 +210,13 @@ impl Config {
         let is_rate = (0.0..f32::INFINITY).contains(&self.learning_rate);
         rule(is_rate, c"learning_rate must be finite and at least 0")?;
         rule((0.0..1.0).contains(&self.momentum), c"momentum must be at least 0 and below 1")?;
-        let color = (Error::Unsupported, c"color must not be the luminance ratio but for 3 channels");
-        ensure(self.color == Color::PerChannel || self.channels == 3, color)?;
+        let excluded = |is_kept, words: &'static CStr| ensure(is_kept, (Error::Unsupported, words));
+        let color = c"color must not be the luminance ratio but for 3 channels";
+        excluded(self.color == Color::PerChannel || self.channels == 3, color)?;
+        let is_least_squares = self.estimator == Estimator::LeastSquares && self.ridge != Ridge::Auto;
+        let square_root = c"solver must not be the square root but for least squares without an automatic ridge";
+        excluded(self.solver != Solver::SquareRoot || is_least_squares, square_root)?;
+        excluded(self.solver != Solver::Dual || self.controls == 0, c"solver must not be the dual with controls")?;
         let terms = c"dims, order, slices and controls make more than 136 terms: lower one of them";
         Shape::new(self.dims, self.order, self.slices, MAX_TERMS - self.controls).map_err(|error| (error, terms))
     }

@@ -71,12 +71,10 @@ impl Method {
 /// # Errors
 /// [`Error::Unsupported`] for what a stream's sums cannot tell: leave-one-out errors need the samples.
 pub(crate) fn check_stream(config: &Config) -> Result<(), Error> {
-    let needs_samples = match config.estimator {
-        Estimator::LeaveOneOut => true,
-        Estimator::LeastSquares => config.ridge == Ridge::Auto,
-        _ => config.solver == Solver::SquareRoot,
-    };
-    ensure(!needs_samples && config.solver != Solver::Dual, Error::Unsupported)
+    let needs_samples = config.solver == Solver::Dual
+        || config.estimator == Estimator::LeaveOneOut
+        || config.estimator == Estimator::LeastSquares && config.ridge == Ridge::Auto;
+    ensure(!needs_samples, Error::Unsupported)
 }
 
 /// The most samples whose fits go through their n x n system.
@@ -101,19 +99,13 @@ pub(crate) struct Plan {
 
 impl Plan {
     /// # Errors
-    /// [`Error::Unsupported`] for options that exclude each other, [`Error::Range`] for more samples than the solver
-    /// takes, or sums, eight side by side but where they stream, or counts of 32 bits hold.
+    /// [`Error::Range`] for more samples than the solver takes, or sums, eight side by side but where they stream, or
+    /// counts of 32 bits hold.
     pub(crate) fn new<R: Real>(config: &Config, functions: usize, n: usize) -> Result<Self, Error> {
         let columns = config.controls + functions;
-        let is_factored = config.estimator == Estimator::LeastSquares && config.ridge != Ridge::Auto;
         let method = Method::of(config, columns);
         let solves = !matches!(method, Method::Plain | Method::Descent);
-        match config.solver {
-            Solver::Dual if config.controls > 0 => return Err(Error::Unsupported),
-            Solver::Dual if n > MAX_DUAL && solves => return Err(Error::Range),
-            Solver::SquareRoot if !is_factored => return Err(Error::Unsupported),
-            _ => {}
-        }
+        ensure(config.solver != Solver::Dual || n <= MAX_DUAL || !solves, Error::Range)?;
         let most = if method.streams() { NARROW_CAPACITY } else { LANES * NARROW_CAPACITY };
         ensure(u32::try_from(n).is_ok() && (!R::NARROW || n <= most), Error::Range)?;
         let dual = n <= most_dual(config, columns);
