@@ -128,8 +128,8 @@ NFS_FUNCTION nfs_uint nfs_mix(nfs_uint h)
 
 NFS_FUNCTION nfs_uint nfs_child(nfs_uint domain, nfs_uint key)
 {
-    nfs_uint h = nfs_mix((key + 0x9e3779b9u) ^ (domain * 0x2c9277b5u));
-    return h == 0u ? 1u : h;
+    nfs_uint h = nfs_mix((key * 0x9e3779b9u) ^ domain);
+    return h == 0u ? 0x2c9277b5u : h;
 }
 
 NFS_FUNCTION nfs_uint nfs_reverse(nfs_uint a)

@@ -18,9 +18,10 @@ pub(crate) const FRAMES: u32 = 0x6672_616d;
 pub(crate) const SCRAMBLE: u32 = 0x7363_7261;
 
 /// The domain that `key` leads to from `domain`; never the root, 0. For either argument fixed, a bijection of the other
-/// but for that exception.
+/// but for that exception. Keys are multiplied: those of one parent would lead where those of another do, as both count
+/// from 0.
 #[inline]
 pub(crate) const fn child(domain: u32, key: u32) -> u32 {
-    let h = mix(key.wrapping_add(GOLDEN) ^ domain.wrapping_mul(0x2c92_77b5));
-    h + (h == 0) as u32
+    let h = mix(key.wrapping_mul(GOLDEN) ^ domain);
+    if h == 0 { 0x2c92_77b5 } else { h }
 }

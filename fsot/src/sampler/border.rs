@@ -4,10 +4,11 @@ use super::problem::OCTAVES;
 
 /// Bins of a marginal: eight in each stratum of the longest octave.
 pub(crate) const BINS: usize = 512;
-/// How many bins beside its own an octave's point counts in, on each side: fewer points are seen less sharply.
-const REACH: [usize; OCTAVES] = [7, 7, 7, 7, 7, 3, 1];
+/// How many bins beside its own an octave's point counts in, on each side: fewer points are seen less sharply. The
+/// finest strata are 8 bins wide: what gathers once in each, a triangle of that side would not see.
+const REACH: [usize; OCTAVES] = [5, 5, 5, 5, 5, 3, 1];
 /// Something for each distance from a bin, up to the longest reach.
-pub(crate) type Shares = [f32; 8];
+pub(crate) type Shares = [f32; 6];
 /// The weights of bins at each distance: triangles whose weights have the sum 1.
 const WEIGHTS: [Shares; OCTAVES] = weights();
 /// Numbers of a state: `[octave][axis][bin]`.
@@ -80,7 +81,7 @@ impl Border {
 }
 
 const fn weights() -> [Shares; OCTAVES] {
-    let mut all = [[0.0; 8]; OCTAVES];
+    let mut all = [[0.0; 6]; OCTAVES];
     let mut octave = 0;
     while octave < OCTAVES {
         let side = REACH[octave] + 1;
@@ -106,13 +107,6 @@ pub(crate) fn around(bin: usize, reach: usize) -> impl Iterator<Item = (usize, u
 /// The bin of a coordinate.
 pub(crate) fn bin(coordinate: u16) -> usize {
     (usize::from(coordinate) * BINS) >> 16
-}
-
-/// Between the middles of two bins.
-pub(crate) fn between(prices: &[f32; BINS], coordinate: f32) -> f32 {
-    let place = (coordinate * BINS as f32 - 0.5).clamp(0.0, (BINS - 1) as f32);
-    let low = (place as usize).min(BINS - 2);
-    prices[low] + (place - low as f32) * (prices[low + 1] - prices[low])
 }
 
 #[cfg(test)]
@@ -144,6 +138,17 @@ mod tests {
         }
     }
 
+    /// Points at the same place of each of the 64 finest strata are seen there.
+    #[test]
+    fn combs_are_seen() {
+        for octave in 0..OCTAVES {
+            let mut border = Border::new(1024);
+            (0..64).for_each(|stratum| border.count(octave, 0, stratum << 10, 1));
+            let [most, least] = [64, 68].map(|bin| border.surplus(octave, 0, bin) + 1.0);
+            assert!(most > 1.05 * least, "octave {octave}: {most} and {least}");
+        }
+    }
+
     #[test]
     fn a_point_more_adds_its_share() {
         for (octave, coordinate) in [(2, 0), (3, 700), (5, 65_535), (6, 30_000)] {
@@ -157,7 +162,7 @@ mod tests {
                 assert!((found - change).abs() < 1e-5, "octave {octave}, bin {bin}: {found} for {change}");
             }
             // The weights of a triangle, as many bins wide as the octave's points allow.
-            let side = [8.0, 8.0, 8.0, 8.0, 8.0, 4.0, 2.0][octave];
+            let side = [6.0, 6.0, 6.0, 6.0, 6.0, 4.0, 2.0][octave];
             let unit = BINS as f32 / (1024 << octave) as f32;
             assert!((share[1] - unit * (side - 1.0) / (side * side)).abs() < 1e-7);
             after.count(octave, 0, coordinate, -1);
@@ -174,14 +179,6 @@ mod tests {
             let surplus = border.surplus(3, 0, bin);
             assert!((border.price(3, 0, bin) - 1.02 * surplus).abs() < 1e-5 * surplus.abs());
             assert_eq!(border.price(4, 0, bin), border.surplus(4, 0, bin), "of another octave nothing is remembered");
-        }
-    }
-
-    #[test]
-    fn prices_are_linear_between_the_middles_of_bins() {
-        let prices: [f32; BINS] = std::array::from_fn(|bin| bin as f32);
-        for (coordinate, price) in [(0.0, 0.0), (0.5 / 512.0, 0.0), (1.25 / 512.0, 0.75), (0.5, 255.5), (1.0, 511.0)] {
-            assert_eq!(between(&prices, coordinate), price);
         }
     }
 }

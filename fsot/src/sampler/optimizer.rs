@@ -20,6 +20,9 @@ pub const SWEEPS: usize = 16;
 /// Pixels this far apart along an axis do not see each other.
 const APART: usize = 2 * REACH;
 
+/// Changes that are added around all pixels at a time.
+const WAITING: usize = 64;
+
 /// Streams of random numbers that are not those of a pixel.
 const START_STREAM: u64 = u64::MAX;
 const ORDER_STREAM: u64 = u64::MAX - 1;
@@ -157,17 +160,16 @@ impl SamplerOptimizer {
         errors
     }
 
-    /// What pixels' changes add to the errors around one.
-    fn add_around(&self, pixel: usize, changes: &[(usize, Errors)], octaves: &[usize], around: &mut Errors) {
+    /// Adds what pixels' changes are of an octave's errors around one.
+    fn add_around(&self, pixel: usize, changes: &[(usize, Errors)], octave: usize, around: &mut Spectrum) {
         let size = self.problem.size as i32;
         let half = size / 2;
         let (x, y) = (pixel as i32 % size, pixel as i32 / size);
         for (other, change) in changes {
             let wrapped = |d: i32| (d + half).rem_euclid(size) - half;
             let (dx, dy) = (wrapped(x - *other as i32 % size), wrapped(y - *other as i32 / size));
-            let Some(weights) = self.weights.at(dx, dy) else { continue };
-            for &octave in octaves {
-                weights.add(&change[octave], &mut around[octave]);
+            if let Some(weights) = self.weights.at(dx, dy) {
+                weights.add(&change[octave], around);
             }
         }
     }
@@ -271,11 +273,20 @@ impl SamplerOptimizer {
             order.swap(last, rng.below(last as u32 + 1) as usize);
         }
         let size = self.problem.size;
+        // Changes that wait to be added around all pixels, and how many of them each pixel has.
+        let mut changes: Vec<(usize, Errors)> = Vec::new();
+        let mut added = vec![0; all.len()];
         for place in order {
             let (row, column) = (place / APART, place % APART);
             let rows = (row..size).step_by(APART);
             let pixels: Vec<usize> =
                 rows.flat_map(|row| (column..size).step_by(APART).map(move |column| row * size + column)).collect();
+            for &pixel in &pixels {
+                for &octave in &energy.octaves {
+                    self.add_around(pixel, &changes[added[pixel]..], octave, &mut fields.around[pixel][octave]);
+                }
+                added[pixel] = changes.len();
+            }
             let prices = self.prices(energy);
             let look = |pixel: &usize| {
                 let rules = Rules {
@@ -298,7 +309,6 @@ impl SamplerOptimizer {
                 })
             };
             let found: Vec<_> = pixels.par_iter().map(look).collect();
-            let mut changes = Vec::new();
             for (pixel, found) in pixels.into_iter().zip(found) {
                 let Some((offsets, places, change)) = found else { continue };
                 let old = std::mem::replace(&mut all[pixel], places);
@@ -309,10 +319,24 @@ impl SamplerOptimizer {
                 add(&mut fields.total, &change);
                 changes.push((pixel, change));
             }
-            let around = fields.around.par_iter_mut().enumerate().with_min_len(64);
-            around.for_each(|(pixel, around)| self.add_around(pixel, &changes, &energy.octaves, around));
+            if changes.len() >= WAITING {
+                self.add_all(&mut changes, &mut added, energy, fields);
+            }
         }
+        self.add_all(&mut changes, &mut added, energy, fields);
         self.border.remember(&energy.octaves);
+    }
+
+    /// Adds the changes that wait around all pixels: an octave at a time, whose changes a processor's cache holds.
+    fn add_all(&self, changes: &mut Vec<(usize, Errors)>, added: &mut [usize], energy: &Energy, fields: &mut Fields) {
+        for &octave in &energy.octaves {
+            let around = fields.around.par_iter_mut().zip(&*added).enumerate().with_min_len(64);
+            around.for_each(|(pixel, (around, added))| {
+                self.add_around(pixel, &changes[*added..], octave, &mut around[octave]);
+            });
+        }
+        changes.clear();
+        added.fill(0);
     }
 
     /// What there is at the beginning of a step.

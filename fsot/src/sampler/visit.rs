@@ -2,7 +2,7 @@
 //! hot, rises by a little.
 
 use super::basis::{Basis, Spectrum};
-use super::border::{BINS, between};
+use super::border::{BINS, bin};
 use super::energy::{Energy, Groups, POINTS, Places};
 use super::power::{LANES, sum, terms};
 use super::problem::OCTAVES;
@@ -33,6 +33,12 @@ pub(crate) struct Rules<'a> {
 
 /// How much shallower than the deepest the bit of the tree is that is tried.
 const DEPTHS: [u32; 16] = [0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 3, 3, 4, 5];
+
+/// Digits that are optimised: those that tell a marginal's bins apart. All others stay as random as they start: within
+/// a bin nothing keeps points from flocking to one place.
+const DIGITS: u32 = BINS.trailing_zeros();
+/// Their bits of an offset.
+const OPTIMISED: u16 = !(0xffff >> DIGITS);
 
 /// A pixel being visited.
 struct Pixel<'a> {
@@ -116,10 +122,9 @@ impl<'a> Pixel<'a> {
     fn cost(&self, point: usize, x: u16, y: u16) -> f32 {
         let first = self.rules.energy.first[point];
         let [along_x, along_y] = &self.around.prices[first];
-        let (ux, uy) = (unit(x), unit(y));
         self.rules.basis.at(x, y, &self.around.fields[first])
-            + self.means[first] * self.rules.basis.mean_at(ux, uy)
-            + (between(along_x, ux) + between(along_y, uy))
+            + self.means[first] * self.rules.basis.mean_at(unit(x), unit(y))
+            + (along_x[bin(x)] + along_y[bin(y)])
     }
 
     fn terms(&self, point: usize, x: f32, y: f32, xs: &[f32], ys: &[f32], into: &mut [f32; POINTS]) -> f32 {
@@ -155,19 +160,19 @@ impl<'a> Pixel<'a> {
                 *offset ^= 0x8000 >> depth;
             }
             if random >> 20 & 1 == 0 {
-                offsets[axis][groups.offset[axis][point]] ^= rng.next_u32() as u16 & (0xffff >> bits);
+                offsets[axis][groups.offset[axis][point]] ^= rng.next_u32() as u16 & (0xffff >> bits) & OPTIMISED;
             }
             return self.decide(axis, groups.members(axis, depth, point), &offsets, rng);
         }
-        let depth = bits + (((random >> 20) * 6) >> 12);
-        let mask = |random: u32| ((0x8000u32 >> depth) | (random & (0x7fffu32 >> depth))) as u16;
+        let depth = bits + (((random >> 20) * (DIGITS - bits)) >> 12);
+        let mask = |random: u32| ((0x8000u32 >> depth) | (random & (0x7fffu32 >> depth))) as u16 & OPTIMISED;
         let random = rng.next_u32();
         offsets[axis][groups.offset[axis][point]] ^= mask(random);
         let members = groups.members(axis, bits, point);
         let both = kind == 7 && members.len() == 1 && groups.members(1 - axis, bits, point).len() == 1;
         if both {
             let finer = random >> 16 & (0xffff >> (depth + (random >> 31)));
-            offsets[1 - axis][groups.offset[1 - axis][point]] ^= finer as u16;
+            offsets[1 - axis][groups.offset[1 - axis][point]] ^= finer as u16 & OPTIMISED;
         }
         self.decide(axis, members, &offsets, rng)
     }
@@ -271,7 +276,7 @@ mod tests {
             let first = rules.energy.octaves.iter().copied().find(|octave| i < 1 << octave).unwrap();
             let [along_x, along_y] = &around.prices[first];
             let asked = rules.basis.at(places[0][i], places[1][i], &around.fields[first]);
-            sum += f64::from(asked + between(along_x, xs[i] as f32) + between(along_y, ys[i] as f32));
+            sum += f64::from(asked + along_x[bin(places[0][i])] + along_y[bin(places[1][i])]);
         }
         sum
     }
@@ -315,6 +320,7 @@ mod tests {
                 }
                 let expected = if taken { &proposal } else { &pixel };
                 assert_eq!((pixel.offsets, pixel.places), (expected.offsets, expected.places));
+                assert!(pixel.offsets.as_flattened().iter().all(|offset| offset & !OPTIMISED == 0));
                 let anew = places(&groups, &pixel.offsets, 5);
                 (0..2).for_each(|axis| assert_eq!(pixel.places[axis][..looked_at], anew[axis][..looked_at]));
                 let fresh = Pixel::new(&cold, &around, 5, (pixel.offsets, pixel.places));

@@ -51,8 +51,8 @@ def _mix(h):
 
 
 def _child(domain, key):
-    h = _mix((key + 0x9E3779B9) ^ (domain * 0x2C9277B5))
-    return dr.select(h == 0, mi.UInt32(1), h)
+    h = _mix((mi.UInt32(key) * 0x9E3779B9) ^ domain)
+    return dr.select(h == 0, mi.UInt32(0x2C9277B5), h)
 
 
 def draw(domain, x, y, first, second=False, scrambled=False, few=False):
