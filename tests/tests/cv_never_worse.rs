@@ -11,16 +11,17 @@ use noisefloor_tests::integrands::{self, Integrand};
 use noisefloor_tests::random::{SplitMix64, mix};
 use noisefloor_tests::statistics::{Ratio, geometric_mean, rmse_ratio};
 
-/// RMSE ratios to the mean of `N` configurations, batch or streaming, on the same samples of an integrand of so many
-/// dims and this integral.
+/// An integrand: its dims, its integral, its values.
+type Parts<'a> = (usize, f64, &'a dyn Fn(&[f64]) -> f64);
+
+/// RMSE ratios to the mean of `N` configurations, batch or streaming, on the same samples.
 fn ratios<const N: usize>(
-    integrand: (usize, f64, &dyn Fn(&[f64]) -> f64),
+    (dims, integral, evaluate): Parts<'_>,
     configs: [(Config, bool); N],
     n: usize,
     repetitions: usize,
     seed: u64,
 ) -> [Ratio; N] {
-    let (dims, integral, evaluate) = integrand;
     let mut rng = SplitMix64::new(mix(seed ^ (n as u64) << 32));
     let mut plain = Vec::with_capacity(repetitions);
     let mut errors: [Vec<f64>; N] = core::array::from_fn(|_| Vec::with_capacity(repetitions));
@@ -55,8 +56,7 @@ fn ratios<const N: usize>(
     errors.map(|errors| rmse_ratio(&errors, &plain))
 }
 
-/// What `ratios` takes.
-fn parts(of: &Integrand) -> (usize, f64, &dyn Fn(&[f64]) -> f64) {
+fn parts(of: &Integrand) -> Parts<'_> {
     (of.dims, of.integral, &of.evaluate)
 }
 
