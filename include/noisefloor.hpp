@@ -1015,11 +1015,11 @@ enum class split : std::uint32_t { norm = NF_NODES_NORM, sign = NF_NODES_SIGN };
 
 namespace detail {
 inline std::uint32_t number(std::size_t size) noexcept { return static_cast<std::uint32_t>(size); }
-// How many values each of so many rows has, 1 of no rows; 0 if they do not agree.
-inline std::uint32_t columns(std::size_t size, std::size_t rows) noexcept
+// How many values each of so many rows has, of none `least`; 0 if they do not agree.
+inline std::uint32_t columns(std::size_t size, std::size_t rows, std::uint32_t least = 1) noexcept
 {
     if (rows == 0)
-        return size == 0 ? 1 : 0;
+        return size == 0 ? least : 0;
     const bool fits = rows <= UINT32_MAX && size % rows == 0 && size / rows <= UINT32_MAX;
     return fits ? number(size / rows) : 0;
 }
@@ -1054,9 +1054,7 @@ inline returned<void> gradient(span<const float> derivatives, std::uint32_t tech
 {
     const bool whole = techniques > 0 && out.size() % techniques == 0;
     const std::size_t rows = whole ? out.size() / techniques : 0;
-    // Of no rows as many as any split takes.
-    const bool none = derivatives.empty() && rows == 0;
-    const std::uint32_t outputs = !whole ? 0 : none ? techniques : detail::columns(derivatives.size(), rows);
+    const std::uint32_t outputs = whole ? detail::columns(derivatives.size(), rows, techniques) : 0;
     return noisefloor::detail::finish(
         outputs > 0 ? nf_importance_gradient(derivatives.data(), detail::number(rows), outputs,
                                              static_cast<std::uint32_t>(how), techniques, out.data())

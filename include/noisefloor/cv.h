@@ -201,7 +201,7 @@ nf_status nf_cv_image_estimate(const nf_cv_config *config, const nf_cv_image *im
 typedef struct nf_cv_descent {
     uint32_t optimizer; // NF_OPTIMIZER_*
     uint32_t iterations; // Steps, at most 2^20; by default half as many as samples, 8 to 128.
-    // Of a step, at least 0: for Adam in standard deviations of the values (.05), else over the largest curvature (1).
+    // Step length, at least 0: for Adam in standard deviations of values (.05), else over the largest curvature (1).
     float learning_rate;
     float momentum; // At least 0, below 1; 0 means .5, for Adam .9. Plain steps have none.
 } nf_cv_descent;

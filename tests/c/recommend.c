@@ -10,7 +10,7 @@ static void fields(void)
         for (sampling = 0; sampling < 2; ++sampling) {
             nf_recommendation out;
             CHECK_STATUS(nf_recommend(dims[j], UINT32_MAX, sampling, 1, INFINITY, &out), NF_OK);
-            CHECK(out.method <= NF_METHOD_SHARED);
+            CHECK(out.method <= NF_METHOD_SHARED && nf_cv_terms(&out.config) > 0);
             CHECK_NAMED(NF_CHECK_CV_CONFIG, &out.config, NULL);
             CHECK(out.config.dims <= dims[j] && out.config.channels == 1);
             CHECK(out.config.stride == dims[j] && out.config.stratified == sampling);

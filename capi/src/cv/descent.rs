@@ -25,7 +25,7 @@ pub struct nf_cv_descent {
     pub optimizer: u32,
     /// Steps, at most 2^20; by default half as many as samples, 8 to 128.
     pub iterations: u32,
-    /// Of a step, at least 0: for Adam in standard deviations of the values (.05), else over the largest curvature (1).
+    /// Step length, at least 0: for Adam in standard deviations of values (.05), else over the largest curvature (1).
     pub learning_rate: f32,
     /// At least 0, below 1; 0 means .5, for Adam .9. Plain steps have none.
     pub momentum: f32,

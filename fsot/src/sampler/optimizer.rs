@@ -160,7 +160,7 @@ impl SamplerOptimizer {
         errors
     }
 
-    /// Adds what pixels' changes are of an octave's errors around one.
+    /// What pixels' changes add to an octave's errors around one.
     fn add_around(&self, pixel: usize, changes: &[(usize, Errors)], octave: usize, around: &mut Spectrum) {
         let size = self.problem.size as i32;
         let half = size / 2;
