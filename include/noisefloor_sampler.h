@@ -181,17 +181,17 @@ NFS_FUNCTION nfs nfs_scramble(nfs s, nfs_uint seed)
     return s;
 }
 
-/* The table's pixel. */
+/* The table's pixel: its column in the low 16 bits of x. */
 NFS_FUNCTION nfs_point nfs_place(nfs s)
 {
     nfs_uint at = (s.flags & 2u) != 0u ? nfs_mix(s.place * 0x9e3779b9u) : s.place;
     nfs_point p;
-    p.x = at & 0xffffu;
+    p.x = at;
     p.y = at >> 16;
     return p;
 }
 
-/* The point of a place, of a number whose bits are reversed. */
+/* The point of a place, of whose x and y the lowest 5 bits count, and of a number whose bits are reversed. */
 NFS_FUNCTION nfs_point nfs_pair(nfs_uint x, nfs_uint y, nfs_uint first NFS_TABLE)
 {
     nfs_uint pixel = NFS_INSERT(x, y, 5, 5); /* in the lowest 10 bits */
@@ -221,7 +221,8 @@ NFS_FUNCTION nfs_uint nfs_order(nfs s, nfs_point at)
 {
     nfs_uint first = nfs_reverse(s.index);
     if (s.domain != 0u) {
-        nfs_uint h = s.domain + at.x * 0x2c1b3c6du + at.y * 0x297a2d39u;
+        /* Column * 0x2c1b3c6d + row * 0x297a2d39, as at.x has the row above the column. */
+        nfs_uint h = s.domain + at.x * 0x2c1b3c6du + at.y * 0xed0d2d39u;
         h = (h ^ (h >> 15)) * 0x735a2d97u;
         h ^= h >> 15;
         first ^= first * (h << 1);

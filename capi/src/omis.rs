@@ -170,8 +170,9 @@ pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis
     })())
 }
 
-/// The optimal MIS gradient of a minibatch as one weight per drawn item (6.2): (1 / batch) sum_s weight[s] * gradient_s
-/// is the gradient of the mean loss for every parameter at once, by one backward pass over weighted losses.
+/// The optimal MIS gradient of a minibatch as one weight per drawn item (section 6.2): with them (1 / batch) sum_s
+/// weight[s] * gradient_s is the gradient of the mean loss for every parameter at once, by one backward pass over
+/// weighted losses.
 ///
 /// solver: NF_OMIS_RIDGE or NF_OMIS_PLAIN, consistent, of weights that may be negative, or NF_OMIS_BALANCE, unbiased.
 /// ridge: as for nf_omis_solve. techniques: J, 1..NF_MIS_MAX_TECHNIQUES. items: N, of the data set, at least 1.

@@ -160,8 +160,9 @@ typedef struct nf_importance_arguments {
     uint32_t techniques; // 1 to NF_MIS_MAX_TECHNIQUES, with NF_NODES_SIGN an even number.
 } nf_importance_arguments;
 
-// The optimal MIS gradient of a minibatch as one weight per drawn item (6.2): (1 / batch) sum_s weight[s] * gradient_s
-// is the gradient of the mean loss for every parameter at once, by one backward pass over weighted losses.
+// The optimal MIS gradient of a minibatch as one weight per drawn item (section 6.2): with them (1 / batch) sum_s
+// weight[s] * gradient_s is the gradient of the mean loss for every parameter at once, by one backward pass over
+// weighted losses.
 // solver: NF_OMIS_RIDGE or NF_OMIS_PLAIN, consistent, of weights that may be negative, or NF_OMIS_BALANCE, unbiased.
 // ridge: as for nf_omis_solve. techniques: J, 1..NF_MIS_MAX_TECHNIQUES. items: N, of the data set, at least 1.
 // pdf[batch * J]: the probability, above 0 to 1 (1.001 for rounding), with which technique j draws the item of sample

@@ -82,7 +82,7 @@ extern const nf_tile nf_tile_128_16spp_2d; // The same, 16 samples.
 extern const nf_tile nf_tile_128_16spp_2d_progressive;
 extern const nf_tile nf_tile_128_1spp_4d; // 128 x 128 pixels, 1 sample, 4 dims.
 extern const nf_tile nf_tile_128_4spp_4d; // The same, 4 samples.
-// 128 x 128 pixels, 1 sample, 2 dims, for images reconstructed with a Gaussian filter (figures 5.21, 5.22).
+// 128 x 128 pixels, 1 sample, 2 dims, for films that splat samples by a Gaussian filter (figures 5.21, 5.22).
 extern const nf_tile nf_tile_128_1spp_2d_gaussian;
 extern const nf_tile nf_tile_128_4spp_2d_gaussian; // The same, 4 samples.
 extern const nf_tile nf_tile_128_1spp_2d_temporal; // 128 x 128 pixels, 1 sample, 2 dims, 16 frames.

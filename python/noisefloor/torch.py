@@ -52,9 +52,8 @@ class ImportanceBatchSampler(Sampler):
         uniform_fraction: the part of draws that are uniform, 0 to 1; with one technique no weight is above
             1 / uniform_fraction.
         momentum: 0 to 1: of an item's importance, from one visit to the next; none in warm-up.
-        techniques: 1 to 16 tables; more than 1 is optimal multiple importance sampling of the output's derivatives.
-            Even, a divisor of the batch of all processes, and at most twice as many as outputs. Weights are then
-            slightly biased and may be negative.
+        techniques: 1 to 16 tables, each with importances of its own; more than 1 is optimal multiple importance
+            sampling. A divisor of the batch of all processes. Weights are then slightly biased and may be negative.
         weighted: False gives weights of 1: adaptive sampling, which is biased towards difficult items.
         seed: 0 to 2**63 - 1, the same in all processes, which is why it has a default. PyTorch's `manual_seed` changes
             nothing here.
@@ -89,10 +88,8 @@ class ImportanceBatchSampler(Sampler):
         self._weighted = bool(weighted)
         self._seed = _arrays.integer("seed", seed, 0, 2**63 - 1)
         techniques = _arrays.integer("techniques", techniques, 1, _c.CONSTANTS["NF_MIS_MAX_TECHNIQUES"])
-        if techniques > 1 and (techniques % 2 or self._whole % techniques):
-            raise ValueError(
-                f"techniques is {techniques}: it must be 1, or even and a divisor of the whole batch, {self._whole}"
-            )
+        if self._whole % techniques:
+            raise ValueError(f"techniques is {techniques}: it must be a divisor of the whole batch, {self._whole}")
         self._warmup = -(-self._n // self._whole) if _arrays.one_of("warmup", warmup, WARMUPS) else 0
         # Seeds that no other sampler's tables have, unless its seed is as far away as nobody counts.
         seeds = [(self._seed + j * 0x9E3779B97F4A7C15) % 2**64 for j in range(techniques)]
@@ -271,7 +268,9 @@ class ImportanceBatchSampler(Sampler):
         return whole[:-1].flatten(0, 1)
 
     @torch.no_grad()
-    def update_from(self, logits: torch.Tensor, *, reduction: str = "mean", scale: float | None = None) -> None:
+    def update_from(
+        self, logits: torch.Tensor, *, reduction: str = "mean", scale: float | None = None, split: str = "sign"
+    ) -> None:
         """As `update`, by the norm of each item's derivative of the loss by its outputs. After the backward pass, with
         `logits.retain_grad()` before it.
 
@@ -281,6 +280,9 @@ class ImportanceBatchSampler(Sampler):
             scale: what the loss was multiplied by besides, 1e-30 to 3.4e38: `scaler.get_scale()` of a GradScaler,
                 before `scaler.update()`, in every process. If given, items whose derivatives overflowed are left out,
                 as the scaler leaves out the step; else they are refused.
+            split: of several techniques (section 6.2.3), output k belonging to group k modulo their number. "norm": as
+                many groups as techniques, each with the norm of its derivatives. "sign": half as many, each with the
+                norm of the positive ones, then of the negative ones.
         """
         scaled, scale = scale is not None, _arrays.number("scale", 1.0 if scale is None else scale, 1e-30, 3.4e38)
         if logits.grad is None:
@@ -291,15 +293,18 @@ class ImportanceBatchSampler(Sampler):
         if len(logits) != len(weight):
             raise ValueError(f"logits has the shape {tuple(logits.shape)}: the last batch has {len(weight)} items")
         count = _arrays.one_of("reduction", reduction, {"mean": len(weight), "sum": 1})
+        is_by_sign = _arrays.one_of("split", split, {"sign": True, "norm": False})
         gradient = logits.grad.float().reshape(len(weight), -1) * (count / scale) / weight[:, None]
         if len(self._tables) == 1:
             self._learn(torch.linalg.vector_norm(gradient, dim=1), scaled=scaled)
             return
-        groups = len(self._tables) // 2
-        if gradient.shape[1] < groups:
-            raise ValueError(f"techniques is {2 * groups}: {gradient.shape[1]} outputs allow {2 * gradient.shape[1]}")
-        # The norms of the positive and of the negative part of every group of outputs (6.2.3).
-        signs = gradient.clamp(min=0), (-gradient).clamp(min=0)
+        if is_by_sign and len(self._tables) % 2:
+            raise ValueError(f"techniques is {len(self._tables)}: split must be 'norm' where it is odd")
+        signs = (gradient.clamp(min=0), (-gradient).clamp(min=0)) if is_by_sign else (gradient,)
+        groups, outputs = len(self._tables) // len(signs), gradient.shape[1]
+        if outputs < groups:
+            allowed = f"{outputs} outputs allow {outputs * len(signs)} with split={split!r}"
+            raise ValueError(f"techniques is {len(self._tables)}: {allowed}")
         parts = [torch.linalg.vector_norm(sign[:, group::groups], dim=1) for group in range(groups) for sign in signs]
         importance = torch.stack(parts, 1)
         importance[weight.abs() < LEAST_WEIGHT] = -1

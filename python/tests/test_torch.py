@@ -1,5 +1,6 @@
 """The batch sampler: in data loaders, killed and resumed, and in several processes."""
 
+import contextlib
 import copy
 import io
 import os
@@ -229,7 +230,7 @@ def test_killed_runs_end_as_others_do(tmp_path, workers, techniques):
     assert finish(*killed) == expected and len(expected) == 64
 
 
-def importances(reduction, techniques=1, scale=None):
+def importances(reduction, techniques=1, scale=None, split="sign"):
     """A step's logits and labels, and what the table then holds."""
     sampler = ImportanceBatchSampler(200, 20, warmup=None, uniform_fraction=1, techniques=techniques, momentum=0)
     for (items,) in DataLoader(TensorDataset(torch.arange(200)), batch_sampler=sampler):
@@ -239,7 +240,7 @@ def importances(reduction, techniques=1, scale=None):
         target = items % 10
         losses = weight * torch.nn.functional.cross_entropy(logits, target, reduction="none")
         ((scale or 1.0) * getattr(losses, reduction)()).backward()
-        sampler.update_from(logits, reduction=reduction, scale=scale)
+        sampler.update_from(logits, reduction=reduction, scale=scale, split=split)
         break
     return sampler, index, logits, target
 
@@ -351,15 +352,21 @@ def test_gradients_of_logits_are_the_softmaxs(reduction):
     assert numpy.allclose(sampler._tables[0].probabilities(), table.probabilities(), rtol=1e-4)
 
 
-def test_several_techniques_weigh_and_learn():
-    sampler, index, logits, target = importances("mean", techniques=4)
+@pytest.mark.parametrize("techniques, split", [(4, "sign"), (4, "norm"), (5, "norm"), (1, "norm")])
+def test_several_techniques_are_of_groups_of_outputs(techniques, split):
+    sampler, index, logits, target = importances("mean", techniques=techniques, split=split)
     derivative = (torch.softmax(logits, 1) - torch.nn.functional.one_hot(target, 10)).detach()
     for j, table in enumerate(sampler._tables):
-        part = (derivative if j % 2 == 0 else -derivative).clamp(min=0)[:, j // 2 :: 2].norm(dim=1)
+        part = derivative[:, j::techniques]
+        if split == "sign":
+            part = (derivative if j % 2 == 0 else -derivative).clamp(min=0)[:, j // 2 :: 2]
         other = noisefloor.Table(200, uniform_fraction=0)
-        other.update(index, part, 0.0)
+        other.update(index, part.norm(dim=1), 0.0)
         table.uniform_fraction = 0
         assert numpy.allclose(table.probabilities(), other.probabilities(), rtol=1e-4)
+
+
+def test_several_techniques_weigh_and_learn():
     sampler = ImportanceBatchSampler(300, 32, techniques=4, seed=2)
     model = train.network(outputs=10)
     optimizer = torch.optim.SGD(model.parameters(), 0.05)
@@ -476,7 +483,7 @@ def test_what_goes_wrong_in_one_process_is_known_to_all(tmp_path):
         (lambda s: ImportanceBatchSampler(0, 1), "n is 0: it must be 1 to"),
         (lambda s: ImportanceBatchSampler(10, 0), "batch_size is 0"),
         (lambda s: ImportanceBatchSampler(10, 2, warmup="step"), "warmup is 'step': it must be one of 'epoch', None"),
-        (lambda s: ImportanceBatchSampler(10, 6, techniques=4), "techniques is 4: it must be 1, or even and a divisor"),
+        (lambda s: ImportanceBatchSampler(10, 6, techniques=4), "techniques is 4: it must be a divisor of the"),
         (lambda s: ImportanceBatchSampler(10, 6, momentum=2), "momentum is 2.0"),
         (lambda s: s.update(torch.ones(3)), r"importance has the shape \(3,\): it must be \(2,\)"),
         (lambda s: s.update(torch.tensor([1.0, float("nan")])), r"importance\[1\] is nan"),
@@ -489,6 +496,7 @@ def test_what_goes_wrong_in_one_process_is_known_to_all(tmp_path):
         (lambda s: s.update(torch.tensor([1j, 1])), "importance holds complex64: real numbers"),
         (lambda s: s.update(None), "importance holds object: real numbers"),
         (lambda s: s.update_from(torch.ones(2, 3)), "call logits.retain_grad"),
+        (lambda s: s.update_from(differentiated(torch.float32), split="half"), "split is 'half': it must be one of"),
         (lambda s: s.update_from(differentiated(torch.complex64)), "logits holds torch.complex64: real numbers"),
         (lambda s: s.load_state_dict(ImportanceBatchSampler(9, 2).state_dict()), "another sampler's: it has .*'n': 9"),
     ],
@@ -524,6 +532,26 @@ def differentiated(kind):
     logits = torch.ones(2, 3, dtype=kind, requires_grad=True)
     logits.abs().sum().backward()
     return logits
+
+
+@pytest.mark.parametrize(
+    "techniques, split, said",
+    [
+        (1, "sign", None),
+        (3, "sign", "techniques is 3: split must be 'norm' where it is odd"),
+        (8, "sign", "techniques is 8: 3 outputs allow 6 with split='sign'"),
+        (4, "norm", "techniques is 4: 3 outputs allow 3 with split='norm'"),
+        (3, "norm", None),
+    ],
+)
+def test_groups_have_outputs(techniques, split, said):
+    sampler = ImportanceBatchSampler(48, 24, techniques=techniques)
+    next(iter(sampler))
+    sampler.batch()
+    logits = torch.ones(24, 3, requires_grad=True)
+    logits.sum().backward()
+    with pytest.raises(ValueError, match=said) if said else contextlib.nullcontext():
+        sampler.update_from(logits, split=split)
 
 
 def test_labels_that_are_no_class_and_other_shapes_are_refused():

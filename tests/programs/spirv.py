@@ -1,6 +1,6 @@
 """Operations of a draw in SPIR-V, and noisefloor_sampler.h in Metal: spirv.py GLSLANG INCLUDE SHADER SCRATCH
 
-A draw of the root has at most 40 integer operations, one of a child 77, and each two fetches; none is of 64 bits.
+A draw of the root has at most 38 integer operations, one of a child 76, and each two fetches; none is of 64 bits.
 """
 
 import re
@@ -24,7 +24,7 @@ def main():
     glslang, include, shader, scratch = sys.argv[1:]
     folder = Path(scratch)
     folder.mkdir(parents=True, exist_ok=True)
-    for name, options, most in (("root", [], 40), ("child", ["-DCHILD"], 77)):
+    for name, options, most in (("root", [], 38), ("child", ["-DCHILD"], 76)):
         module, optimised = str(folder / f"{name}.spv"), str(folder / f"{name}.opt.spv")
         run(glslang, "-V", *options, f"-I{include}", "-o", module, shader)
         run("spirv-opt", "-O", "-O", module, "-o", optimised)

@@ -30,7 +30,7 @@ pub static nf_tile_128_1spp_4d: nf_tile = builtin(Builtin::Size128Spp1Dims4);
 /// The same, 4 samples.
 #[unsafe(no_mangle)]
 pub static nf_tile_128_4spp_4d: nf_tile = builtin(Builtin::Size128Spp4Dims4);
-/// 128 x 128 pixels, 1 sample, 2 dims, for images reconstructed with a Gaussian filter (figures 5.21, 5.22).
+/// 128 x 128 pixels, 1 sample, 2 dims, for films that splat samples by a Gaussian filter (figures 5.21, 5.22).
 #[unsafe(no_mangle)]
 pub static nf_tile_128_1spp_2d_gaussian: nf_tile = builtin(Builtin::Size128Spp1Dims2Gaussian);
 /// The same, 4 samples.

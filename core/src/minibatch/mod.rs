@@ -7,7 +7,7 @@
 //! - [`importance`]: how important an item is, from the output layer alone (6.1.4).
 //! - [`weights()`]: one weight per drawn item of several importance distributions, so that the optimal MIS gradient
 //!   costs one weighted backward pass; [`Gradient`]: the same from explicit per-item gradients, with momentum over
-//!   steps (6.2).
+//!   steps (section 6.2).
 //!
 //! Everywhere the estimate of the gradient of the **mean** loss is `(1 / batch) sum_s weight_s gradient_s`.
 

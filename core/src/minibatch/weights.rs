@@ -8,7 +8,7 @@ use crate::real::saturate;
 
 /// The optimal MIS gradient as weights: the gradient of the mean loss is `(1 / batch) sum_s weight[s] gradient_s`, for
 /// every parameter at once. One backward pass over the weighted losses computes it; no per-item gradient is needed
-/// (6.2).
+/// (section 6.2).
 ///
 /// weight = v batch / N with, for S = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2,
 ///

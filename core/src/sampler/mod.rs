@@ -2,7 +2,8 @@
 //!
 //! One table serves any number of samples. Each pixel has a sequence of its own, of which the first 1, 2, 4, ... points
 //! are (0, m, 2)-nets; neighbours' sequences are so arranged that a filter, a denoiser or the eye removes most of the
-//! error that remains (chapter 5). There is nothing to choose and no state to keep: any sample can be had in any order.
+//! error that remains. That is the aim of chapter 5, not its method, which makes [tiles](crate::tile). There is nothing
+//! to choose and no state to keep: any sample can be had in any order.
 //!
 //! - [`Sampler`]: one sample of one pixel. Each decision of a path (lens, light, bounce) has a *domain*, a child of the
 //!   sampler by a key of its own.

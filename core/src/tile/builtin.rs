@@ -58,9 +58,9 @@ tiles! {
     Size128Spp1Dims4 "tile-128-1spp-4d" "128_1SPP_4D";
     /// 128 x 128 pixels, 4 samples, 4 dims.
     Size128Spp4Dims4 "tile-128-4spp-4d" "128_4SPP_4D";
-    /// 128 x 128 pixels, 1 sample, 2 dims, for images reconstructed with a Gaussian filter.
+    /// 128 x 128 pixels, 1 sample, 2 dims, for films that splat samples by a Gaussian filter.
     Size128Spp1Dims2Gaussian "tile-128-1spp-2d-gaussian" "128_1SPP_2D_GAUSSIAN";
-    /// 128 x 128 pixels, 4 samples, 2 dims, for images reconstructed with a Gaussian filter.
+    /// 128 x 128 pixels, 4 samples, 2 dims, for films that splat samples by a Gaussian filter.
     Size128Spp4Dims2Gaussian "tile-128-4spp-2d-gaussian" "128_4SPP_2D_GAUSSIAN";
     /// 128 x 128 pixels, 1 sample, 2 dims, 16 frames.
     Size128Spp1Dims2Temporal "tile-128-1spp-2d-temporal" "128_1SPP_2D_TEMPORAL";
