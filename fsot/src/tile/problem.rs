@@ -3,7 +3,7 @@
 use super::kernel::Kernel;
 use super::temporal::TemporalKernel;
 use crate::error::{Error, Result, check};
-use crate::optimize::{Domain, Quality};
+use crate::optimize::Quality;
 use noisefloor::tile::{MAX_DIMS, MAX_FRAMES, MAX_SIZE, MAX_SPP};
 
 /// The most coordinates in all.
@@ -30,9 +30,6 @@ pub struct TileProblem {
     pub temporal: Option<TemporalKernel>,
     /// Whether the first 1, 2, 4, ... samples of all pixels are tiles too.
     pub progressive: bool,
-    /// The classes of the prefixes of a progressive tile: of 1, 2, 4, ..., `spp` samples. Of the shares only the ratios
-    /// matter. Empty: the documented default.
-    pub prefixes: Vec<ClassShare>,
     /// The class of what the renderer reconstructs a pixel from, beside the perceptual one: it lowers the error that is
     /// there before any perception, such as that of single pixels. In an animation with a temporal kernel, over time.
     pub box_class: ClassShare,
@@ -56,8 +53,6 @@ pub struct TileProblem {
     /// The threshold of a slice is z = u^e with u uniform on [0, 1): above 1 prefers wide subclasses. For a Gaussian
     /// kernel it is the same as a standard deviation sqrt(e) times as large. 0.25 to 4.
     pub threshold_exponent: f32,
-    /// The domain of the samples. Every step looks at a torus from another random shift.
-    pub domain: Domain,
 }
 
 /// What a class counts beside the others.
@@ -113,7 +108,6 @@ impl TileProblem {
             kernel: Kernel::Perceptual,
             temporal: None,
             progressive: false,
-            prefixes: Vec::new(),
             box_class: ClassShare { share: if spp > 1 { 0.1 } else { 0.0 }, weight: 1.0 },
             reconstruction: Kernel::Box,
             frame_share: 0.5,
@@ -124,7 +118,6 @@ impl TileProblem {
             steps: Steps { first: 4.0, last: 0.05, hold: 0.3 },
             offset_correction: if spp > 1 && dims <= 2 { 0.5 } else { 0.0 },
             threshold_exponent: if spp > 1 { 1.4 } else { 1.2 },
-            domain: Domain::Bounded,
         }
     }
 
@@ -154,7 +147,7 @@ impl TileProblem {
         check((1..=MAX_DIRECTIONS).contains(&self.directions), "directions", self.directions, "1 to 16 per step")?;
         let ClassShare { share, weight } = self.box_class;
         check((0.0..=1.0).contains(&share), "the box class's share", share, "0 to 1")?;
-        check_weight("the box class's weight", weight)?;
+        check(weight > 0.0 && weight <= 1024.0, "the box class's weight", weight, "above 0 and at most 1024")?;
         check((0.0..=1.0).contains(&self.frame_share), "the frame share", self.frame_share, "0 to 1")?;
         check(
             self.temporal.is_none() || share + self.frame_share <= 1.0,
@@ -186,29 +179,10 @@ impl TileProblem {
             self.threshold_exponent,
             "0.25 to 4",
         )?;
-        self.check_prefixes()?;
         if self.temporal.is_some() && self.frames < 2 {
             return Err(Error::input("a temporal kernel is for an animation: ask for at least 2 frames"));
         }
         Ok(())
-    }
-
-    fn check_prefixes(&self) -> Result<()> {
-        if !self.progressive || self.prefixes.is_empty() {
-            return Ok(());
-        }
-        let (levels, given) = (self.spp.trailing_zeros() as usize + 1, self.prefixes.len());
-        check(given == levels, "the number of prefixes", given, "one for each of 1, 2, 4, ..., spp samples")?;
-        for ClassShare { share, weight } in &self.prefixes {
-            check((0.0..=1e6).contains(share), "a prefix's share", share, "0 to 1e6")?;
-            check_weight("a prefix's weight", *weight)?;
-        }
-        check(
-            self.prefixes.iter().any(|prefix| prefix.share > 0.0),
-            "every prefix's share",
-            0,
-            "a positive one at least",
-        )
     }
 
     /// The step size of an iteration.
@@ -218,9 +192,4 @@ impl TileProblem {
         let falling = ((done - f64::from(hold)) / (1.0 - f64::from(hold)).max(1e-9)).clamp(0.0, 1.0);
         f64::from(first) + falling * (f64::from(last) - f64::from(first))
     }
-}
-
-/// An [`Error::Input`] unless it can be a class's weight.
-fn check_weight(what: &str, weight: f32) -> Result<()> {
-    check(weight > 0.0 && weight <= 1024.0, what, weight, "above 0 and at most 1024")
 }

@@ -180,8 +180,8 @@ fn description(problem: &TileProblem) -> Value {
         "parameters": format!(
             "{:?}",
             (
-                &problem.prefixes, problem.frame_share, problem.directions, projections, steps,
-                problem.offset_correction, problem.threshold_exponent, problem.domain,
+                problem.frame_share, problem.directions, projections, steps,
+                problem.offset_correction, problem.threshold_exponent,
             )
         ),
     })
