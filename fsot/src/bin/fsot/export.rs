@@ -69,8 +69,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         Format::Png => tile::png(&view)?,
         Format::Exr => tile::exr(&view)?,
         Format::Raw => view.payload().to_vec(),
-        Format::CHeader => tile::c_header(&view, &name)?,
-        Format::Rust => tile::rust(&view, &name)?,
+        Format::CHeader => tile::c_header(&view, &name),
+        Format::Rust => tile::rust(&view, &name),
     };
     output::write(&args.out, &bytes)
 }
