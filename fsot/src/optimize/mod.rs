@@ -1,4 +1,4 @@
-//! The optimiser: stochastic descent on the sliced multi-class barycenter (5.4).
+//! The optimiser: stochastic descent on the sliced multi-class barycenter (section 5.4).
 
 mod check;
 mod cut;

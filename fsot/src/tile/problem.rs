@@ -5,6 +5,7 @@ use super::temporal::TemporalKernel;
 use crate::error::{Error, Result, check};
 use crate::optimize::Quality;
 use noisefloor::tile::{MAX_DIMS, MAX_FRAMES, MAX_SIZE, MAX_SPP};
+use serde::Serialize;
 
 /// The most coordinates in all.
 const MAX_COORDINATES: usize = 1 << 28;
@@ -14,7 +15,7 @@ const MAX_ITERATIONS: u64 = 1 << 24;
 const MAX_DIRECTIONS: usize = 16;
 
 /// A tile to be optimised. [`TileProblem::new`] gives one whose parameters were tuned; any may be changed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TileProblem {
     /// Pixels along each side: a power of two from 8 to 1024, more than twice the kernel's radius.
     pub size: usize,
@@ -56,7 +57,7 @@ pub struct TileProblem {
 }
 
 /// What a class counts beside the others.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ClassShare {
     /// The share of the slices: 0 to 1.
     pub share: f32,
@@ -67,7 +68,7 @@ pub struct ClassShare {
 }
 
 /// What a slice is projected on.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Projections {
     /// The probability of an axis.
     pub axis: f32,
@@ -77,7 +78,7 @@ pub struct Projections {
 
 /// The step size: `first`, then from `hold` (as a part of all iterations) falling linearly to `last`. 1 moves a sample
 /// by the mean of the displacements that its slices ask for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Steps {
     /// The step size at first: above 0, at most 16.
     pub first: f32,

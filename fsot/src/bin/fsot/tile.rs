@@ -95,7 +95,7 @@ fn make(args: &Args) -> Result<()> {
     // Refuses what a tile's file cannot hold before the work.
     nft::header(shape, problem.seed, &kernel)?;
     let mut optimizer = TileOptimizer::new(problem.clone())?;
-    let run = drive(&mut optimizer, &description(&problem), &args.common)?;
+    let run = drive(&mut optimizer, &json!({ "command": "tile", "tile": problem }), &args.common)?;
 
     let samples = optimizer.samples();
     let file = TileFile::new(shape, problem.seed, &kernel, &samples.coordinates)?;
@@ -166,25 +166,6 @@ fn shape(problem: &TileProblem, bits: u32) -> Shape {
         bits,
         progressive: problem.progressive,
     }
-}
-
-/// All that the samples depend on.
-fn description(problem: &TileProblem) -> Value {
-    let TileProblem { box_class, projections, steps, .. } = problem;
-    json!({
-        "command": "tile", "size": problem.size, "spp": problem.spp, "dims": problem.dims, "frames": problem.frames,
-        "kernel": format!("{:?}", problem.kernel), "reconstruction": format!("{:?}", problem.reconstruction),
-        "temporal-kernel": problem.temporal.as_ref().map(|kernel| format!("{kernel:?}")),
-        "progressive": problem.progressive, "seed": problem.seed, "iterations": problem.iterations,
-        "box-share": box_class.share, "box-weight": box_class.weight,
-        "parameters": format!(
-            "{:?}",
-            (
-                problem.frame_share, problem.directions, projections, steps,
-                problem.offset_correction, problem.threshold_exponent,
-            )
-        ),
-    })
 }
 
 fn measure(file: &TileFile, problem: &TileProblem, integrands: usize) -> Result<TileReport> {
