@@ -7,8 +7,8 @@ use fsot::counted::counted;
 use fsot::error::Result;
 use fsot::export::nft::TileFile;
 use fsot::export::sidecar::{self, Row, Sidecar};
-use fsot::tile::{TileProblem, presets};
-use noisefloor::tile::Shape;
+use fsot::tile::{TileProblem, preset};
+use noisefloor::tile::{Builtin, Shape};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -31,9 +31,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 
 fn list() -> Result<(String, Value)> {
     let mut text = String::new();
-    for name in presets::NAMES {
-        let Some(problem) = presets::preset(name) else { continue };
-        let TileProblem { size, spp, dims, frames, iterations, .. } = &problem;
+    let tiles = Builtin::ALL.map(|tile| (tile.name(), preset(tile)));
+    for (name, problem) in &tiles {
+        let TileProblem { size, spp, dims, frames, iterations, .. } = problem;
         let frames = if *frames > 1 { format!(", {frames} frames") } else { String::new() };
         let kernels = problem.kernels();
         let progressive = if problem.progressive { ", progressive" } else { "" };
@@ -45,7 +45,7 @@ fn list() -> Result<(String, Value)> {
         )
         .unwrap_or(());
     }
-    Ok((text, json!({ "presets": presets::NAMES })))
+    Ok((text, json!({ "presets": tiles.map(|(name, _)| name) })))
 }
 
 fn tell(tile: &Path) -> Result<(String, Value)> {

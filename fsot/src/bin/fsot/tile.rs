@@ -9,8 +9,8 @@ use fsot::export::nft::{self, TileFile};
 use fsot::export::sidecar::{self, Quality, Sidecar};
 use fsot::metrics::{TileOptions, TileReport, TileView, measure_tile};
 use fsot::output::{self, Outputs};
-use fsot::tile::{self, ClassShare, Kernel, TemporalKernel, TileOptimizer, TileProblem, presets};
-use noisefloor::tile::Shape;
+use fsot::tile::{self, ClassShare, Kernel, TemporalKernel, TileOptimizer, TileProblem, preset};
+use noisefloor::tile::{Builtin, Shape};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -122,7 +122,7 @@ fn make(args: &Args) -> Result<()> {
 
 fn problem(args: &Args) -> Result<TileProblem> {
     let mut problem = match &args.preset {
-        Some(name) => presets::preset(name).ok_or_else(|| {
+        Some(name) => Builtin::ALL.into_iter().find(|tile| tile.name() == name).map(preset).ok_or_else(|| {
             Error::Input(format!("--preset {name}: there is no such tile; `fsot info` lists those there are"))
         })?,
         None => TileProblem {
