@@ -198,9 +198,9 @@ fn density(path: &Path, dims: usize, points: usize, invert: bool, files: &mut Ve
             path.display()
         )));
     }
-    let bytes = read::picture(path)?;
-    files.push(digest(&bytes));
-    read::density(&bytes, path, points, invert)
+    let (target, digest) = read::density(path, points, invert)?;
+    files.push(digest);
+    Ok(target)
 }
 
 fn draw(table: &Table, extent: [f32; 2]) -> Drawing {

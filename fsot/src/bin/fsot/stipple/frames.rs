@@ -2,7 +2,6 @@
 
 use super::args::{Args, Picture};
 use crate::drive::{drive, finish};
-use fsot::checkpoint::digest;
 use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::export::points::Table;
@@ -44,10 +43,9 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     let mut photos = Vec::with_capacity(pictures.len());
     let mut digests = Vec::with_capacity(pictures.len());
     for path in &pictures {
-        let bytes = read::picture(path)?;
-        digests.push(digest(&bytes));
-        let named = |why| Error::Input(format!("{}: {why}", path.display()));
-        photos.push(Photo::new(&read::decode_image(&bytes, path)?).map_err(named)?);
+        let (photo, digest) = read::photo(path)?;
+        photos.push(photo);
+        digests.push(digest);
     }
     let options = args.options(needed);
     let animation = Animation::new(&photos, windows, &options)?;
