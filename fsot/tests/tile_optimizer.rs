@@ -1,7 +1,7 @@
 //! The tile optimiser: its gradient, and that nothing but the problem decides the result.
 
 use fsot::run::Optimization;
-use fsot::tile::{ClassShare, Kernel, Projections, Steps, TemporalKernel, TileOptimizer, TileProblem};
+use fsot::tile::{ClassShare, Kernel, Projections, Steps, TemporalKernel, TileOptimizer, TileProblem, TileSamples};
 
 /// A problem whose slices all select 3x3 pixels: each sample takes part in 9 of them.
 fn even(dims: usize, spp: usize) -> TileProblem {
@@ -80,10 +80,15 @@ fn varied() -> Vec<TileProblem> {
     ]
 }
 
+fn made(problem: &TileProblem) -> TileSamples {
+    let mut optimizer = TileOptimizer::new(problem.clone()).unwrap();
+    optimizer.run();
+    optimizer.samples()
+}
+
 fn run(problem: &TileProblem, threads: usize) -> Vec<u32> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    let samples = pool.install(|| TileOptimizer::new(problem.clone()).unwrap().run());
-    samples.coordinates.iter().map(|value| value.to_bits()).collect()
+    pool.install(|| made(problem)).coordinates.iter().map(|value| value.to_bits()).collect()
 }
 
 #[test]
@@ -137,7 +142,7 @@ fn a_state_of_another_problem_is_refused() {
 #[test]
 fn the_bits_of_a_small_tile() {
     let problem = TileProblem { iterations: 32, ..TileProblem::new(16, 4, 2) };
-    let samples = TileOptimizer::new(problem).unwrap().run();
+    let samples = made(&problem);
     let hash = samples.coordinates.iter().fold(0xcbf2_9ce4_8422_2325u64, |hash, &value| {
         (hash ^ u64::from(noisefloor::tile::quantize(value, 16))).wrapping_mul(0x100_0000_01b3)
     });
@@ -149,7 +154,7 @@ fn the_bits_of_a_small_tile() {
 fn samples_stay_inside() {
     let steps = Steps { first: 16.0, last: 16.0, hold: 1.0 };
     let problem = TileProblem { iterations: 8, steps, ..TileProblem::new(16, 2, 3) };
-    let samples = TileOptimizer::new(problem).unwrap().run();
+    let samples = made(&problem);
     assert!(samples.coordinates.iter().all(|value| (0.0..1.0).contains(value)));
 }
 

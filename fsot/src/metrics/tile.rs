@@ -5,6 +5,7 @@ use super::plane::{Plane, Transform};
 use super::spectrum::Spectrum;
 use crate::counted;
 use crate::error::{Error, Result};
+use crate::tile::TileSamples;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex;
 use serde::Serialize;
@@ -45,6 +46,12 @@ impl<'a> TileView<'a> {
         }
         super::check_coordinates(dims, coordinates)?;
         Ok(TileView { size, spp, dims, frames, coordinates })
+    }
+
+    /// A view of samples. Errors: as [`new`](TileView::new).
+    pub fn of(samples: &'a TileSamples) -> Result<TileView<'a>> {
+        let TileSamples { size, spp, dims, frames, coordinates } = samples;
+        TileView::new(*size, *spp, *dims, *frames, coordinates)
     }
 
     /// Numbers of samples whose error is measured: the powers of two up to the tile's, and the tile's own.

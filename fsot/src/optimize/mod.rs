@@ -24,8 +24,6 @@ use crate::run::Optimization;
 /// Takes all steps of an optimisation, on the threads of the current rayon pool.
 pub fn optimize(problem: Problem) -> Result<Points> {
     let mut optimizer = Optimizer::new(problem)?;
-    while optimizer.iteration() < optimizer.iterations() {
-        optimizer.step();
-    }
+    optimizer.run();
     Ok(optimizer.points())
 }

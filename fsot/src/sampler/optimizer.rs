@@ -104,11 +104,6 @@ impl SamplerOptimizer {
         Ok(optimizer)
     }
 
-    /// What is being optimised.
-    pub fn problem(&self) -> &SamplerProblem {
-        &self.problem
-    }
-
     /// What there is now, of all octaves.
     pub fn measure(&mut self) -> SamplerReport {
         let energy = Energy::new(&self.basis, &[1.0; OCTAVES]);

@@ -84,24 +84,11 @@ impl TileOptimizer {
         })
     }
 
-    /// What is being optimised.
-    pub fn problem(&self) -> &TileProblem {
-        &self.problem
-    }
-
     /// The samples as they are now; unless they are progressive, those of each pixel [ordered](TileSamples::ordered).
     pub fn samples(&self) -> TileSamples {
         let TileProblem { size, spp, dims, frames, .. } = self.problem;
         let samples = TileSamples { size, spp, dims, frames, coordinates: self.coordinates.clone() };
         if self.problem.progressive { samples } else { samples.ordered() }
-    }
-
-    /// Takes all steps that remain.
-    pub fn run(mut self) -> TileSamples {
-        while self.iteration < self.problem.iterations {
-            self.step();
-        }
-        self.samples()
     }
 
     /// The bins of every direction and length.

@@ -12,6 +12,7 @@ use fsot::metrics::{self, TileOptions, TileView, figure};
 use fsot::output;
 use fsot::points::Points;
 use fsot::read;
+use fsot::tile::TileSamples;
 use noisefloor::tile::Shape;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -72,23 +73,7 @@ pub(crate) enum Content {
     /// Points and their classes.
     Points(Table),
     /// The samples of a tile.
-    Tile(Samples),
-}
-
-/// The samples of a tile, laid out [frame][y][x][sample][dim].
-pub(crate) struct Samples {
-    size: usize,
-    spp: usize,
-    dims: usize,
-    frames: usize,
-    coordinates: Vec<f32>,
-}
-
-impl Samples {
-    /// For the metrics.
-    pub(crate) fn view(&self) -> Result<TileView<'_>> {
-        TileView::new(self.size, self.spp, self.dims, self.frames, &self.coordinates)
-    }
+    Tile(TileSamples),
 }
 
 impl Tile {
@@ -106,7 +91,7 @@ impl Tile {
             let file = TileFile::read(path)?;
             let Shape { size, spp, dims, frames, .. } = file.header().shape();
             let [size, spp, dims, frames] = [size, spp, dims, frames].map(|length| length as usize);
-            return Ok(Content::Tile(Samples { size, spp, dims, frames, coordinates: file.coordinates() }));
+            return Ok(Content::Tile(TileSamples { size, spp, dims, frames, coordinates: file.coordinates() }));
         }
         let table = read::points(path)?;
         metrics::check(&table.points).map_err(in_file(path))?;
@@ -120,7 +105,7 @@ impl Tile {
                 counted(self.spp, "sample")
             )));
         }
-        Ok(Content::Tile(Samples {
+        Ok(Content::Tile(TileSamples {
             size,
             spp: self.spp,
             dims: table.points.dims(),
@@ -179,7 +164,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     if !args.ema.is_empty() && tiles == 0 {
         return Err(idle("--ema", "tiles"));
     }
-    let moves = |content: &Content| matches!(content, Content::Tile(Samples { frames: 2.., .. }));
+    let moves = |content: &Content| matches!(content, Content::Tile(TileSamples { frames: 2.., .. }));
     if !args.ema.is_empty() && !contents.iter().any(moves) {
         args.options().check()?;
         return Err(idle("--ema", "tiles of several frames"));
@@ -236,8 +221,8 @@ fn points(args: &Args, path: &Path, table: &Table, text: &mut String) -> Result<
     Ok(value)
 }
 
-fn tile(args: &Args, path: &Path, samples: &Samples, text: &mut String) -> Result<Value> {
-    let report = metrics::measure_tile(&samples.view()?, &args.options())?;
+fn tile(args: &Args, path: &Path, samples: &TileSamples, text: &mut String) -> Result<Value> {
+    let report = metrics::measure_tile(&TileView::of(samples)?, &args.options())?;
     let _ = writeln!(text, "{}\n{report}", path.display());
     Ok(json!({ "file": path.to_string_lossy(), "tile": report }))
 }

@@ -5,7 +5,7 @@ use crate::measure::{Content, Tile, idle, title};
 use crate::names;
 use fsot::error::{Error, Result};
 use fsot::metrics::figure::{self, Subject};
-use fsot::metrics::{Spectrum, error_spectrum};
+use fsot::metrics::{Spectrum, TileView, error_spectrum};
 use fsot::output::{self, Outputs};
 use std::path::{Path, PathBuf};
 
@@ -80,7 +80,7 @@ fn one(args: &Args, path: &Path) -> Result<(Spectrum, Subject)> {
             Ok((Spectrum::of_points(&table.points, axes)?, Subject::Points))
         }
         Content::Tile(samples) => {
-            Ok((error_spectrum(&samples.view()?, args.integrands.unwrap_or(256) as usize)?, Subject::Tile))
+            Ok((error_spectrum(&TileView::of(&samples)?, args.integrands.unwrap_or(256) as usize)?, Subject::Tile))
         }
     }
 }
