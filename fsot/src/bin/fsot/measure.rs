@@ -153,7 +153,7 @@ pub(crate) fn in_file(path: &Path) -> impl Fn(Error) -> Error + '_ {
 /// Reads every file before it measures the first, so that a wrong name costs no time.
 pub(crate) fn run(args: &Args) -> Result<()> {
     if let Some(folder) = &args.scenes {
-        let (text, json) = args.threads.install(|| scenes::run(folder, &args.files))??;
+        let (text, json) = args.threads.install(|| scenes::run(folder, &args.files))?;
         return args.report.print([], &text, &json);
     }
     args.plot.iter().try_for_each(|path| names::picture(path, &["png", "svg"]))?;
@@ -176,7 +176,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         return Err(idle("--quick", "point sets"));
     }
     let (text, json) =
-        args.threads.install(|| if args.prefix { prefix(args, &contents) } else { all(args, &contents) })??;
+        args.threads.install(|| if args.prefix { prefix(args, &contents) } else { all(args, &contents) })?;
     args.report.print(args.plot.as_deref(), &text, &json)
 }
 

@@ -36,15 +36,11 @@ pub(crate) struct Args {
     #[command(flatten)]
     pictures: Pictures,
     #[command(flatten)]
-    common: Common,
+    pub(crate) common: Common,
 }
 
 /// Places objects; writes a table of them, and pictures.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    args.common.threads.install(|| make(args))?
-}
-
-fn make(args: &Args) -> Result<()> {
     let format = Format::of(&args.common.out)?;
     args.pictures.check()?;
     args.common.check_outputs(args.pictures.paths(), args.map.as_deref())?;

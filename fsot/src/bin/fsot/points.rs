@@ -70,15 +70,11 @@ pub(crate) struct Args {
     #[command(flatten)]
     pictures: Pictures,
     #[command(flatten)]
-    common: Common,
+    pub(crate) common: Common,
 }
 
 /// Makes the points, writes and measures them.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    args.common.threads.install(|| make(args))?
-}
-
-fn make(args: &Args) -> Result<()> {
     args.pictures.check()?;
     names::table(&args.common.out, "; --png and --svg draw the points")?;
     args.common.check_outputs(args.pictures.paths(), args.density.as_deref())?;

@@ -34,15 +34,11 @@ pub(crate) struct Args {
     #[arg(allow_negative_numbers = true)]
     border: f32,
     #[command(flatten)]
-    common: Common,
+    pub(crate) common: Common,
 }
 
 /// Makes the table and writes it.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    args.common.threads.install(|| make(args))?
-}
-
-fn make(args: &Args) -> Result<()> {
     let out = &args.common.out;
     names::sampler(out)?;
     let beside = (!output::is_stream(out)).then(|| sidecar::path(out));

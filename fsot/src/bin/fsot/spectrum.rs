@@ -42,7 +42,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     names::picture(&args.out, &["png"])?;
     let outs = [args.out.as_path()].into_iter().chain(args.svg.then_some(svg.as_path()));
     output::check(outs, args.files.iter().map(PathBuf::as_path))?;
-    let (spectrum, subject) = args.threads.install(|| average(args))??;
+    let (spectrum, subject) = args.threads.install(|| average(args))?;
     let sheet = figure::spectrum(&title(&args.files), &spectrum, subject);
     let mut outputs = Outputs::new();
     outputs.add(&args.out, &sheet.png()?)?;

@@ -22,11 +22,11 @@ use std::path::Path;
 
 /// Stipples a picture or an animation.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    args.common.threads.install(|| match (&args.image, &args.frames) {
+    match (&args.image, &args.frames) {
         (Some(image), None) => picture(args, image),
         (_, Some(frames)) => frames::animation(args, frames),
         (None, None) => Err(Error::input("give a picture, or the pictures of an animation with --frames")),
-    })?
+    }
 }
 
 fn picture(args: &Args, image: &Path) -> Result<()> {

@@ -67,7 +67,7 @@ pub(crate) struct Args {
     #[arg(value_parser = clap::value_parser!(u32).range(1..=65536))]
     integrands: u32,
     #[command(flatten)]
-    common: Common,
+    pub(crate) common: Common,
 }
 
 fn bits(text: &str) -> std::result::Result<u32, String> {
@@ -80,10 +80,6 @@ fn bits(text: &str) -> std::result::Result<u32, String> {
 
 /// Makes the tile, writes and measures it.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    args.common.threads.install(|| make(args))?
-}
-
-fn make(args: &Args) -> Result<()> {
     let out = &args.common.out;
     let sidecar = (!output::is_stream(out)).then(|| sidecar::path(out));
     args.common.check_outputs(sidecar.as_deref(), [])?;
