@@ -6,7 +6,7 @@ use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::optimize::Problem;
 use crate::picture::{Drawing, Photo};
-use crate::points::{BELOW_ONE, Points};
+use crate::points::Points;
 use crate::random::stream;
 use crate::target::image::{ImageTarget, spread};
 use std::ops::Range;
@@ -217,7 +217,6 @@ fn starting(targets: &[Arc<ImageTarget>], windows: Windows, seed: u64) -> Points
         let mut rng = stream(seed, super::STARTING, frame as u64);
         coordinates.extend(spread(&[target], &[new], &mut rng));
     }
-    coordinates.iter_mut().for_each(|x: &mut f32| *x = x.min(BELOW_ONE));
     Points::new(2, coordinates)
 }
 

@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::export::points::Labels;
 use crate::optimize::{Domain, Problem};
 use crate::picture::{Drawing, Photo};
-use crate::points::{BELOW_ONE, Points};
+use crate::points::Points;
 use crate::random::stream;
 use crate::target::image::{ImageTarget, spread};
 use options::{effort, inks, paper, radius};
@@ -145,9 +145,7 @@ const STARTING: u64 = u64::MAX - 1;
 fn starting(targets: &[ImageTarget], dots: &[Dots], seed: u64) -> Points {
     let targets: Vec<&ImageTarget> = targets.iter().collect();
     let counts: Vec<usize> = dots.iter().map(|dots| dots.range.len()).collect();
-    let mut coordinates = spread(&targets, &counts, &mut stream(seed, STARTING, 0));
-    coordinates.iter_mut().for_each(|x| *x = x.min(BELOW_ONE));
-    Points::new(2, coordinates)
+    Points::new(2, spread(&targets, &counts, &mut stream(seed, STARTING, 0)))
 }
 
 /// A class for every subset of the inks.
