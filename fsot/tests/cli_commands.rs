@@ -2,7 +2,7 @@
 
 use crate::cli_support::{Place, error};
 use fsot::export::nft::TileFile;
-use fsot::export::sidecar::Sidecar;
+use fsot::export::sidecar::{self, Sidecar};
 use fsot::read;
 use image::{GrayImage, Luma};
 use noisefloor::tile::Shape;
@@ -113,7 +113,7 @@ fn a_tile_and_its_sidecar() {
         let file = TileFile::read(&place.path("t.nft")).unwrap();
         let Shape { size, spp, dims, frames, bits, .. } = file.view().shape();
         assert_eq!((size, spp, dims, frames, bits), shape);
-        let sidecar = Sidecar::read(&place.path("t.nft")).unwrap().unwrap();
+        let sidecar = sidecar::read::<Sidecar>(&place.path("t.nft")).unwrap().unwrap();
         assert!(sidecar.describes(file.bytes()));
         assert_eq!((sidecar.seed, sidecar.iterations), (3, 4));
         assert_eq!(place.names(), ["t.nft", "t.toml"]);

@@ -1,7 +1,7 @@
 //! Names, pictures and sizes that are seldom: what is made of them, or why nothing is.
 
 use crate::cli_support::{Place, error};
-use fsot::export::sidecar::Sidecar;
+use fsot::export::sidecar::{self, Sidecar};
 use fsot::picture::Photo;
 use fsot::read;
 use fsot::target::Target;
@@ -30,7 +30,7 @@ fn a_folder_of_memory_in_dev_holds_files_like_any_other() {
     let arguments = format!("tile --size 16 --iterations 2 --integrands 1 --out {}", out.display());
     let printed = place.succeed(&arguments);
     assert!(printed.contains("t.nft"), "{printed}");
-    assert!(Sidecar::read(&out).unwrap().is_some());
+    assert!(sidecar::read::<Sidecar>(&out).unwrap().is_some());
     std::fs::write(&out, "old").unwrap();
     place.succeed(&arguments);
     assert!(std::fs::read(&out).unwrap().starts_with(b"\x8eNFT"));
@@ -107,7 +107,7 @@ fn the_command_of_a_sidecar_is_one_of_a_shell() {
     ] {
         let mut command = place.command("tile --size 16 --iterations 1 --integrands 1 --out");
         assert!(command.arg(name).output().unwrap().status.success());
-        let sidecar = Sidecar::read(&place.path(name)).unwrap().unwrap();
+        let sidecar = sidecar::read::<Sidecar>(&place.path(name)).unwrap().unwrap();
         assert!(sidecar.command.ends_with(words), "{}", sidecar.command);
         assert!(!sidecar.command.contains("--reconstruction"), "{}", sidecar.command);
     }
@@ -119,7 +119,7 @@ fn reconstruction_is_the_second_factor_unless_given() {
     let make = |options: &str| {
         let arguments = "tile --size 16 --spp 4 --iterations 8 --integrands 1 --quiet --out t.nft --kernel";
         place.succeed(&format!("{arguments} {options}"));
-        (place.read("t.nft"), Sidecar::read(&place.path("t.nft")).unwrap().unwrap().command)
+        (place.read("t.nft"), sidecar::read::<Sidecar>(&place.path("t.nft")).unwrap().unwrap().command)
     };
     let (gaussian, command) = make("box*gaussian:0.7");
     assert!(!command.contains("--reconstruction"), "{command}");

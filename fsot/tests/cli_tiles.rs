@@ -2,7 +2,7 @@
 
 use crate::cli_support::Place;
 use fsot::export::nft::TileFile;
-use fsot::export::sidecar::{Quality, Row, Sidecar};
+use fsot::export::sidecar::{self, Quality, Row, Sidecar};
 use fsot::tile::preset;
 use noisefloor::tile::Builtin;
 use std::fs;
@@ -62,7 +62,7 @@ fn sidecars_describe_their_tiles() {
         let name = builtin.name();
         let path = tile(name);
         let file = TileFile::read(&path).unwrap();
-        let sidecar = Sidecar::read(&path).unwrap().unwrap_or_else(|| panic!("{name} has no sidecar"));
+        let sidecar = sidecar::read::<Sidecar>(&path).unwrap().unwrap_or_else(|| panic!("{name} has no sidecar"));
         assert!(sidecar.describes(file.bytes()), "{name}");
         assert_eq!(sidecar.kernel, file.header().kernel(), "{name}");
         assert_eq!(sidecar.seed, file.header().seed(), "{name}");
@@ -76,11 +76,11 @@ fn sidecars_describe_their_tiles() {
 #[test]
 fn the_smallest_tile_is_made_again_with_the_same_bytes() {
     let path = tile("64_1SPP_2D");
-    let shipped = Sidecar::read(&path).unwrap().unwrap();
+    let shipped = sidecar::read::<Sidecar>(&path).unwrap().unwrap();
     let place = Place::new();
     place.succeed(shipped.command.strip_prefix("fsot ").unwrap());
     assert!(place.read("64_1SPP_2D.nft") == fs::read(&path).unwrap(), "other bytes: run cargo xtask tiles and say why");
-    let made = Sidecar::read(&place.path("64_1SPP_2D.nft")).unwrap().unwrap();
+    let made = sidecar::read::<Sidecar>(&place.path("64_1SPP_2D.nft")).unwrap().unwrap();
     assert_eq!(made.command, shipped.command);
     assert_eq!((made.seed, made.iterations), (shipped.seed, shipped.iterations));
     assert_eq!(made.kernel, shipped.kernel);

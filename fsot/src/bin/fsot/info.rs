@@ -51,7 +51,7 @@ fn list() -> Result<(String, Value)> {
 fn tell(tile: &Path) -> Result<(String, Value)> {
     let path = tile.display();
     let file = TileFile::read(tile)?;
-    let mut sidecar = Sidecar::read(tile)?;
+    let mut sidecar: Option<Sidecar> = sidecar::read(tile)?;
     if sidecar.as_ref().is_some_and(|sidecar| !sidecar.describes(file.bytes())) {
         say(&format!("warning: {} describes another tile: its sha256 differs", sidecar::path(tile).display()))?;
         sidecar = None;
