@@ -138,12 +138,15 @@ fn draws_spectra() {
     let folder = TempDir::new().unwrap();
     let files = [1, 2].map(|seed| file(&folder, &format!("{seed}.txt"), &text(&random(64, 3, seed), |_| None)));
     let out = folder.path().join("spectrum.png");
-    succeed(&["spectrum", "--axes", "3", "1", "--svg", "--out", out.to_str().unwrap(), &files[0], &files[1]]);
+    let vector = folder.path().join("spectrum.svg");
+    for out in [&out, &vector] {
+        succeed(&["spectrum", "--axes", "3", "1", "--out", out.to_str().unwrap(), &files[0], &files[1]]);
+    }
     let picture = image::open(&out).unwrap().to_rgb8();
     assert!(
         picture.width() > 1000 && picture.pixels().any(|p| p.0 == [255; 3]) && picture.pixels().any(|p| p.0[0] < 60)
     );
-    let svg = std::fs::read_to_string(out.with_extension("svg")).unwrap();
+    let svg = std::fs::read_to_string(vector).unwrap();
     assert!(svg.starts_with("<svg") && svg.contains("data:image/png;base64,") && svg.contains("anisotropy"));
     let tile = folder.path().join("tile.png");
     succeed(&["spectrum", "--size", "8", "--integrands", "4", "--out", tile.to_str().unwrap(), &files[0]]);

@@ -1,6 +1,6 @@
 //! The file `NAME.toml` beside a tile `NAME.nft`: how it was made and how good it is.
 
-use crate::checkpoint::digest;
+use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::metrics::TileReport;
 use crate::metrics::tile::Energies;

@@ -243,20 +243,16 @@ pub fn error_spectrum(tile: &TileView, integrands: usize) -> Result<Spectrum> {
     Ok(Spectrum::new(size, power, size as f64, tile.frames))
 }
 
-/// The integrands that tiles of `dims` dimensions are measured with. Normals of half-spaces have no component below
-/// .001 (.03 in more than two dimensions).
-pub fn integrands(family: Family, dims: usize, count: usize) -> Vec<Integrand> {
-    numbered(family, dims, 0, count)
-}
-
-fn numbered(family: Family, dims: usize, first: u64, count: usize) -> Vec<Integrand> {
+/// The integrands that tiles of `dims` dimensions are measured with, from number `first` on. Normals of half-spaces have
+/// no component below .001 (.03 in more than two dimensions).
+pub fn integrands(family: Family, dims: usize, first: u64, count: usize) -> Vec<Integrand> {
     let smallest = if dims > 2 { 0.03 } else { 1e-3 };
     (first..first + count as u64).map(|i| Integrand::random(family, dims, smallest, SEED, i)).collect()
 }
 
 /// Two integrands share one complex transform. An odd number is rounded up.
 fn pairs_of(family: Family, axes: &[usize], first: u64, count: usize) -> Vec<[Integrand; 2]> {
-    let all = numbered(family, axes.len(), first, count.next_multiple_of(2));
+    let all = integrands(family, axes.len(), first, count.next_multiple_of(2));
     all.chunks_exact(2).map(|pair| [pair[0].clone(), pair[1].clone()]).collect()
 }
 

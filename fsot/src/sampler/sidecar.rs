@@ -3,7 +3,7 @@
 use super::optimizer::SamplerReport;
 use super::problem::SamplerProblem;
 use super::table::SamplerTable;
-use crate::checkpoint::digest;
+use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::export::sidecar;
 use crate::read;

@@ -2,8 +2,8 @@
 
 use crate::common::Report;
 use crate::say::say;
-use fsot::checkpoint::digest;
 use fsot::counted::counted;
+use fsot::digest::digest;
 use fsot::error::Result;
 use fsot::export::nft::TileFile;
 use fsot::export::sidecar::{self, Row, Sidecar};

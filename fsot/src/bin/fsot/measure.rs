@@ -7,8 +7,9 @@ use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::export::nft::TileFile;
 use fsot::export::points::Table;
+use fsot::metrics::figure::{self, Sheet};
 use fsot::metrics::text::PrefixTable;
-use fsot::metrics::{self, TileOptions, TileView, figure};
+use fsot::metrics::{self, TileOptions, TileView};
 use fsot::output;
 use fsot::points::Points;
 use fsot::read;
@@ -20,6 +21,8 @@ use std::path::{Path, PathBuf};
 
 /// The most classes of a file that are measured, the first ones.
 const CLASSES: usize = 256;
+/// Numbers of points per doubling that --prefix prints.
+const PER_OCTAVE: usize = 4;
 
 /// What `fsot measure` is asked for.
 #[derive(clap::Args, Debug)]
@@ -36,10 +39,6 @@ pub(crate) struct Args {
     /// With --prefix: draw the errors, as SVG if the name ends so, else as PNG
     #[arg(long, value_name = "FILE", requires = "prefix")]
     plot: Option<PathBuf>,
-    /// Numbers of points per doubling that --prefix prints
-    #[arg(long, value_name = "COUNT", default_value_t = 4, requires = "prefix")]
-    #[arg(value_parser = clap::value_parser!(u8).range(1..=64))]
-    per_octave: u8,
     /// Random integrands of each family, of --prefix and of tiles [default: 512]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=65536))]
     integrands: Option<u32>,
@@ -135,6 +134,12 @@ pub(crate) fn title(files: &[PathBuf]) -> String {
         [file] => name(file),
         [file, more @ ..] => format!("{} and {} more", name(file), more.len()),
     }
+}
+
+/// Writes a picture: as SVG if its name ends so, else as PNG.
+pub(crate) fn draw(path: &Path, sheet: &Sheet) -> Result<()> {
+    let bytes = if read::ending(path) == "svg" { sheet.svg()?.into_bytes() } else { sheet.png()? };
+    output::write(path, &bytes)
 }
 
 /// That an option, which is for `what`, has no effect.
@@ -239,12 +244,10 @@ fn prefix(args: &Args, contents: &[Content]) -> Result<(String, Value)> {
             ))),
         })
         .collect::<Result<_>>()?;
-    let counts = metrics::log_spaced(sets.first().map_or(0, Points::len), args.per_octave.into());
+    let counts = metrics::log_spaced(sets.first().map_or(0, Points::len), PER_OCTAVE);
     let errors = metrics::prefix_errors(&sets, &counts, args.integrands())?;
     if let Some(path) = &args.plot {
-        let sheet = figure::prefix_errors(&title(&args.files), &errors);
-        let is_svg = read::ending(path) == "svg";
-        output::write(path, &if is_svg { sheet.svg()?.into_bytes() } else { sheet.png()? })?;
+        draw(path, &figure::prefix_errors(&title(&args.files), &errors))?;
     }
     let text = format!(
         "error of the first points, averaged over {} and {} of each family\n{}",

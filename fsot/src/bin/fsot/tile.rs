@@ -3,7 +3,7 @@
 use crate::common::Common;
 use crate::drive::{Run, drive, finish};
 use crate::names;
-use fsot::checkpoint::digest;
+use fsot::digest::digest;
 use fsot::error::{Error, Result};
 use fsot::export::nft::{self, TileFile};
 use fsot::export::sidecar::{self, Quality, Sidecar};
