@@ -205,11 +205,11 @@ fn draw(table: &Table, extent: [f32; 2]) -> Drawing {
     let radius = (0.1 * extent[0] * extent[1] / (std::f32::consts::PI * table.points.len() as f32)).sqrt();
     let radius = radius.clamp(0.5 / PICTURE, 0.02);
     match &table.classes {
-        None => drawing.dots(table.points.iter(), 1.0, radius, BLACK),
+        None => drawing.dots(table.points.iter(), radius, BLACK),
         Some(labels) => {
             for (class, colour) in (0..labels.names.len()).zip(COLOURS.iter().cycle()) {
                 let members = table.points.iter().zip(&labels.index).filter(|(_, index)| **index == class);
-                drawing.dots(members.map(|(point, _)| point), 1.0, radius, *colour);
+                drawing.dots(members.map(|(point, _)| point), radius, *colour);
             }
         }
     }

@@ -13,7 +13,7 @@ use fsot::error::{Error, Result};
 use fsot::export::points::Table;
 use fsot::optimize::Optimizer;
 use fsot::output::Outputs;
-use fsot::picture::{blurred_psnr, check_size, rasterise};
+use fsot::picture::{blurred_psnr, check_size, png, rasterise};
 use fsot::read;
 use fsot::stipple::Stipple;
 use serde_json::json;
@@ -46,7 +46,8 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
     let drawing = stipple.drawing(&points);
     let drawn = rasterise(&drawing, size as f32)?;
     let mut outputs = Outputs::new();
-    outputs.add(&args.common.out, &format.encode(&drawing, &drawn, size)?)?;
+    let picture = if format == Picture::Png { png(&drawn)? } else { format.encode(&drawing, size)? };
+    outputs.add(&args.common.out, &picture)?;
     let table = Table { points, classes: Some(stipple.labels()) };
     args.copies.add(&mut outputs, &drawing, size, &table)?;
     finish(outputs, &run)?;

@@ -5,7 +5,7 @@ use crate::names;
 use fsot::error::{Error, Result};
 use fsot::export::points::{Format, Table, encode};
 use fsot::output::{self, Outputs};
-use fsot::picture::{Drawing, png, svg};
+use fsot::picture::{Drawing, png, rasterise, svg};
 use fsot::read;
 use fsot::stipple::{Options, Tone};
 use serde_json::json;
@@ -150,9 +150,9 @@ impl Picture {
         }
     }
 
-    pub(super) fn encode(self, drawing: &Drawing, drawn: &image::RgbImage, size: u32) -> Result<Vec<u8>> {
+    pub(super) fn encode(self, drawing: &Drawing, size: u32) -> Result<Vec<u8>> {
         match self {
-            Picture::Png => png(drawn),
+            Picture::Png => png(&rasterise(drawing, size as f32)?),
             Picture::Svg => Ok(svg(drawing, size as f32).into_bytes()),
         }
     }

@@ -58,11 +58,10 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     drop(optimizer);
     let mut outputs = Outputs::new();
     for (frame, path) in outs.iter().enumerate() {
-        let drawing = animation.frame(&points, frame);
-        outputs.add(path, &format.encode(&drawing, &rasterise(&drawing, size as f32)?, size)?)?;
+        outputs.add(path, &format.encode(&animation.frame(&points, frame), size)?)?;
     }
     let all = animation.all(&points);
-    outputs.add(&args.common.out, &format.encode(&all, &rasterise(&all, size as f32)?, size)?)?;
+    outputs.add(&args.common.out, &format.encode(&all, size)?)?;
     let table = Table { points, classes: None };
     args.copies.add(&mut outputs, &all, size, &table)?;
     finish(outputs, &run)?;
