@@ -67,6 +67,7 @@ fn measures_points_classes_and_tiles() {
     {
         assert!(report.pointer(path).is_some_and(Value::is_f64), "{path} in {report}");
     }
+    assert_eq!(report["spectra"][0]["axes"], serde_json::json!([1, 2]));
     assert_eq!(json["files"][1]["classes"][1]["class"], "blue");
     assert_eq!(json["files"][1]["classes"][1]["report"]["points"], 32);
     let quick: Value = serde_json::from_str(&succeed(&["measure", "--json", "--quick", &plain])).unwrap();
@@ -190,8 +191,9 @@ fn bad_input_is_refused_and_nothing_written() {
     fail(&folder, &["measure", &tile], &["tile.nft"]);
     fail(&folder, &["measure", "--size", "7", &good], &["64 points", "7x7"]);
     fail(&folder, &["measure", "--size", "0", &good], &["0x0"]);
-    fail(&folder, &["measure", "--size", "8", "--ema", "2", &good], &["alpha 2"]);
-    fail(&folder, &["measure", "--size", "8", "--ema", "-1", &good], &["alpha -1"]);
+    fail(&folder, &["measure", "--size", "8", "--ema", "2", &good], &["alpha is 2; use 1e-6 to 1"]);
+    fail(&folder, &["measure", "--size", "8", "--ema", "-1", &good], &["alpha is -1;"]);
+    fail(&folder, &["measure", "--size", "8", "--ema", "1e-7", &good], &["alpha is 0.0000001; use 1e-6 to 1"]);
     fail(&folder, &["measure", "--prefix", &good, &more], &["different sizes"]);
     fail(&folder, &["measure", "--prefix", "--plot", "/nowhere/plot.png", &good], &["/nowhere"]);
     fail(&folder, &["spectrum", "--out", out, &good, &more], &["as many points"]);

@@ -65,11 +65,7 @@ fn varied() -> Vec<TileProblem> {
             offset_correction: 1.0,
             ..base(4, 2)
         },
-        TileProblem {
-            projections: Projections { axis: 0.1, plane: 0.4 },
-            directions: 5,
-            ..base(2, 4)
-        },
+        TileProblem { projections: Projections { axis: 0.1, plane: 0.4 }, directions: 5, ..base(2, 4) },
         TileProblem { frames: 4, temporal: Some(TemporalKernel::Ema(0.5)), frame_share: 0.3, ..base(1, 2) },
         TileProblem {
             frames: 16,

@@ -16,15 +16,11 @@ pub fn preset(tile: Builtin) -> TileProblem {
         Builtin::Size128Spp4Dims4 => space(128, 4, 0.12),
         Builtin::Size128Spp1Dims2Gaussian => gaussian(plane(128, 1, 2048), 0.0),
         Builtin::Size128Spp4Dims2Gaussian => gaussian(plane(128, 4, 4096), 0.3),
-        Builtin::Size128Spp1Dims2Temporal => {
-            temporal(plane(128, 1, 1024), 0.5, ClassShare { share: 0.1, weight: 1.0 })
-        }
+        Builtin::Size128Spp1Dims2Temporal => temporal(plane(128, 1, 1024), 0.5, ClassShare { share: 0.1, weight: 1.0 }),
         Builtin::Size64Spp1Dims2 => plane(64, 1, 2048),
         Builtin::Size64Spp4Dims2 => plane(64, 4, 8192),
         // The pixel's own integral counts more over frames, as it does within them from a few samples on.
-        Builtin::Size64Spp4Dims2Temporal => {
-            temporal(plane(64, 4, 2048), 0.65, ClassShare { share: 0.15, weight: 2.5 })
-        }
+        Builtin::Size64Spp4Dims2Temporal => temporal(plane(64, 4, 2048), 0.65, ClassShare { share: 0.15, weight: 2.5 }),
     }
 }
 
