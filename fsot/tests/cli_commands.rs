@@ -50,11 +50,11 @@ fn points_with_every_option() {
         assert_eq!(json["run"]["iterations"], 10, "{options}");
     }
     // Of many prefixes some are measured, but no others.
-    let json = place.succeed("points -n 1024 --progressive 20 --out p.txt --iterations 10 --json");
+    let json = place.succeed("points -n 1000 --progressive 20 --out p.txt --iterations 10 --json");
     let json: Value = serde_json::from_str(&json).unwrap();
     let measured = json["prefixes"].as_array().unwrap().iter().map(|row| row["points"].as_u64().unwrap() as usize);
-    let (measured, all) = (measured.collect::<Vec<_>>(), fsot::class::progressive_prefixes(20, 1024));
-    assert!(measured.iter().all(|count| all.contains(count)) && measured.last() == Some(&1024), "{measured:?}");
+    let (measured, all) = (measured.collect::<Vec<_>>(), fsot::class::progressive_prefixes(20, 1000));
+    assert!(measured.iter().all(|count| all.contains(count)) && measured.last() == Some(&1000), "{measured:?}");
     let printed = place.succeed("points -n 64 --progressive 3 --out p.txt --iterations 10");
     assert!(printed.contains("errors of the first points"), "{printed}");
     assert!(place.succeed("points -n 64 --out p.txt --iterations 10 --quiet").is_empty());

@@ -244,8 +244,8 @@ pub fn error_spectrum(tile: &TileView, integrands: usize) -> Result<Spectrum> {
     Ok(Spectrum::new(size, power, size as f64, tile.frames))
 }
 
-/// The integrands that tiles of `dims` dimensions are measured with, from number `first` on. Normals of half-spaces have
-/// no component below .001 (.03 in more than two dimensions).
+/// The integrands that tiles of `dims` dimensions are measured with, from number `first` on. Normals of half-spaces
+/// have no component below .001 (.03 in more than two dimensions).
 pub fn integrands(family: Family, dims: usize, first: u64, count: usize) -> Vec<Integrand> {
     let smallest = if dims > 2 { 0.03 } else { 1e-3 };
     (first..first + count as u64).map(|i| Integrand::random(family, dims, smallest, SEED, i)).collect()
