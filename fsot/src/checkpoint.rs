@@ -3,8 +3,7 @@
 //! A file is, little-endian: `FSOTCKP1`, the length of the header (u32), the header (JSON: version, program, problem,
 //! iteration, number of coordinates), the coordinates (f32), the SHA-256 of all of that.
 
-pub use crate::digest::digest;
-
+use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::output;
 use crate::run::Optimization;

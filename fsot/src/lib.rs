@@ -6,7 +6,7 @@
 pub mod checkpoint;
 pub mod class;
 pub mod counted;
-mod digest;
+pub mod digest;
 pub mod error;
 pub mod export;
 pub mod memory;

@@ -7,6 +7,13 @@ pub fn stream(seed: u64, iteration: u64, slice: u64) -> Rng {
     Rng::new(mix(seed, iteration, slice, 1), mix(seed, iteration, slice, 2))
 }
 
+/// Puts things in an order at random (Fisher and Yates).
+pub(crate) fn shuffle<T>(things: &mut [T], rng: &mut Rng) {
+    for last in (1..things.len()).rev() {
+        things.swap(last, rng.below(last as u32 + 1) as usize);
+    }
+}
+
 /// A unit vector, uniform on the sphere.
 pub(crate) fn direction(dims: usize, rng: &mut Rng) -> Vec<f64> {
     loop {

@@ -6,9 +6,10 @@ mod ending;
 pub use ending::ending;
 
 use crate::counted::counted;
+use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::export::points::{Json, Labels, Table};
-use crate::picture::is_linear;
+use crate::picture::{Photo, is_linear};
 use crate::points::Points;
 use crate::target::image::ImageTarget;
 use image::error::ImageError;
@@ -26,18 +27,10 @@ const LINE: usize = 100;
 const BYTE_ORDER_MARK: char = '\u{feff}';
 const NO_PICTURE: &str = "not a picture that can be read: use PNG, JPEG or OpenEXR";
 
-/// The content of a picture's file, to be decoded by [`decode_image`].
-///
-/// # Errors
-/// The file is missing, a folder, unreadable, empty, too large (1 GiB; 128 MiB from a pipe or a device) or no picture.
-pub fn picture(path: &Path) -> Result<Vec<u8>> {
-    bounded::read(path, |beginning| format(beginning).map(drop).ok_or(NO_PICTURE))
-}
-
 /// The content of a tile's file, which begins as such files do; nothing else is known of it.
 ///
 /// # Errors
-/// As [`picture`].
+/// The file is missing, a folder, unreadable, empty, too large (1 GiB; 128 MiB from a pipe or a device) or no such file.
 pub fn tile(path: &Path) -> Result<Vec<u8>> {
     begun(path, &MAGIC, "not a tile file (.nft)")
 }
@@ -46,7 +39,7 @@ pub fn tile(path: &Path) -> Result<Vec<u8>> {
 /// after them, little-endian. Any other file is `otherwise`.
 ///
 /// # Errors
-/// As [`picture`].
+/// As [`tile`].
 pub fn floats(path: &Path, magic: &str, otherwise: &'static str) -> Result<(Vec<usize>, Vec<f32>)> {
     let bytes = begun(path, magic.as_bytes(), otherwise)?;
     let parsed = || {
@@ -62,7 +55,7 @@ pub fn floats(path: &Path, magic: &str, otherwise: &'static str) -> Result<(Vec<
 /// The content of a file of any kind.
 ///
 /// # Errors
-/// As [`picture`].
+/// As [`tile`].
 pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>> {
     bounded::read(path, |_| Ok(()))
 }
@@ -77,7 +70,7 @@ fn begun(path: &Path, magic: &[u8], otherwise: &'static str) -> Result<Vec<u8>> 
 /// The content of a file of text, which is to be `what`.
 ///
 /// # Errors
-/// As [`picture`]; the file is not text in UTF-8.
+/// As [`tile`]; the file is not text in UTF-8.
 pub fn text(path: &Path, what: &str) -> Result<String> {
     let none = || Error::Input(format!("{} is not {what}: it is not text", path.display()));
     let mut binary = false;
@@ -97,19 +90,24 @@ pub fn text(path: &Path, what: &str) -> Result<String> {
     Ok(text)
 }
 
-/// A picture, PNG, JPEG or OpenEXR by its content, whatever its name says.
+/// A picture to be drawn with dots, and the SHA-256 of its file: PNG, JPEG or OpenEXR by its content, whatever its name
+/// says, upright as its Exif data says.
 ///
 /// # Errors
-/// As [`picture`] and [`decode_image`].
-pub fn image(path: &Path) -> Result<DynamicImage> {
-    decode_image(&picture(path)?, path)
+/// As [`tile`]; the picture is damaged, of more pixels than 512 MiB hold, or of a value that is not finite.
+pub fn photo(path: &Path) -> Result<(Photo, String)> {
+    let (image, digest) = picture(path)?;
+    let photo = Photo::new(&image).map_err(|why| Error::Input(format!("{}: {why}", path.display())))?;
+    Ok((photo, digest))
 }
 
-/// As [`image`](fn@image), from the content of the file `path`, upright as its Exif data says.
-///
-/// # Errors
-/// The content is of no known format, damaged, or of more pixels than 512 MiB hold.
-pub fn decode_image(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
+/// A decoded picture, and the SHA-256 of its file.
+fn picture(path: &Path) -> Result<(DynamicImage, String)> {
+    let bytes = bounded::read(path, |beginning| format(beginning).map(drop).ok_or(NO_PICTURE))?;
+    Ok((decode(&bytes, path)?, digest(&bytes)))
+}
+
+fn decode(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
     let Some((format, name)) = format(bytes) else {
         return Err(Error::Input(format!("{} is {NO_PICTURE}", path.display())));
     };
@@ -159,13 +157,14 @@ fn png_size(bytes: &[u8]) -> Option<(u32, u32)> {
     (bytes.get(12..16)? == b"IHDR").then_some((number(16)?, number(20)?))
 }
 
-/// A picture as a density for `points` points: its luma as it is stored (not linear light), or what is missing to
-/// white; transparent parts have none. Values beyond 1 (OpenEXR) are densities too, but not if inverted.
+/// A picture as a density for `points` points, and the SHA-256 of its file: its luma as it is stored (not linear
+/// light), or what is missing to white; transparent parts have none. Values beyond 1 (OpenEXR) are densities too, but
+/// not if inverted.
 ///
 /// # Errors
-/// As [`decode_image`]; a value that is negative or not finite; a density of 0 everywhere.
-pub fn density(bytes: &[u8], path: &Path, points: usize, invert: bool) -> Result<ImageTarget> {
-    let decoded = decode_image(bytes, path)?;
+/// As [`photo`]; a value that is negative; a density of 0 everywhere.
+pub fn density(path: &Path, points: usize, invert: bool) -> Result<(ImageTarget, String)> {
+    let (decoded, digest) = picture(path)?;
     let (premultiplied, picture) = (is_linear(&decoded), decoded.to_luma_alpha32f());
     drop(decoded);
     let (width, height) = picture.dimensions();
@@ -190,8 +189,9 @@ pub fn density(bytes: &[u8], path: &Path, points: usize, invert: bool) -> Result
             path.display()
         )));
     }
-    ImageTarget::new(width as usize, height as usize, &weights, points)
-        .map_err(|error| Error::Input(format!("{}: {error}", path.display())))
+    let target = ImageTarget::new(width as usize, height as usize, &weights, points)
+        .map_err(|error| Error::Input(format!("{}: {error}", path.display())))?;
+    Ok((target, digest))
 }
 
 /// A point set by its content: JSON, CSV (rows with commas) or text (columns separated by spaces), as

@@ -14,6 +14,13 @@ pub trait Optimization {
     /// Takes one step, on the threads of the current rayon pool. Returns what is being minimised, before the step.
     fn step(&mut self) -> f64;
 
+    /// Takes all steps that remain.
+    fn run(&mut self) {
+        while self.iteration() < self.iterations() {
+            self.step();
+        }
+    }
+
     /// The state: coordinates, and what else a sampler remembers.
     fn coordinates(&self) -> &[f32];
 

@@ -145,7 +145,7 @@ fn a_checkpoint_of_another_build_is_refused_and_stays() {
     let (key, mut bytes) = (b"\"program\":\"", whole[..whole.len() - 32].to_vec());
     let at = bytes.windows(key.len()).position(|part| part == key).unwrap() + key.len();
     bytes[at] = if bytes[at] == b'0' { b'1' } else { b'0' };
-    let checksum = fsot::checkpoint::digest(&bytes);
+    let checksum = fsot::digest::digest(&bytes);
     bytes.extend((0..32).map(|byte| u8::from_str_radix(&checksum[2 * byte..2 * byte + 2], 16).unwrap()));
     fs::write(&path, &bytes).unwrap();
     let error = resume(&path, &problem(7), &mut Walk::new()).unwrap_err().to_string();

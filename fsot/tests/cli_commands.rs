@@ -2,7 +2,7 @@
 
 use crate::cli_support::{Place, error};
 use fsot::export::nft::TileFile;
-use fsot::export::sidecar::Sidecar;
+use fsot::export::sidecar::{self, Sidecar};
 use fsot::read;
 use image::{GrayImage, Luma};
 use noisefloor::tile::Shape;
@@ -49,6 +49,12 @@ fn points_with_every_option() {
         let json: Value = serde_json::from_str(&json).unwrap();
         assert_eq!(json["run"]["iterations"], 10, "{options}");
     }
+    // Of many prefixes some are measured, but no others.
+    let json = place.succeed("points -n 1000 --progressive 20 --out p.txt --iterations 10 --json");
+    let json: Value = serde_json::from_str(&json).unwrap();
+    let measured = json["prefixes"].as_array().unwrap().iter().map(|row| row["points"].as_u64().unwrap() as usize);
+    let (measured, all) = (measured.collect::<Vec<_>>(), fsot::class::progressive_prefixes(20, 1000));
+    assert!(measured.iter().all(|count| all.contains(count)) && measured.last() == Some(&1000), "{measured:?}");
     let printed = place.succeed("points -n 64 --progressive 3 --out p.txt --iterations 10");
     assert!(printed.contains("errors of the first points"), "{printed}");
     assert!(place.succeed("points -n 64 --out p.txt --iterations 10 --quiet").is_empty());
@@ -113,7 +119,7 @@ fn a_tile_and_its_sidecar() {
         let file = TileFile::read(&place.path("t.nft")).unwrap();
         let Shape { size, spp, dims, frames, bits, .. } = file.view().shape();
         assert_eq!((size, spp, dims, frames, bits), shape);
-        let sidecar = Sidecar::read(&place.path("t.nft")).unwrap().unwrap();
+        let sidecar = sidecar::read::<Sidecar>(&place.path("t.nft")).unwrap().unwrap();
         assert!(sidecar.describes(file.bytes()));
         assert_eq!((sidecar.seed, sidecar.iterations), (3, 4));
         assert_eq!(place.names(), ["t.nft", "t.toml"]);

@@ -1,7 +1,7 @@
 //! Names, pictures and sizes that are seldom: what is made of them, or why nothing is.
 
 use crate::cli_support::{Place, error};
-use fsot::export::sidecar::Sidecar;
+use fsot::export::sidecar::{self, Sidecar};
 use fsot::picture::Photo;
 use fsot::read;
 use fsot::target::Target;
@@ -30,7 +30,7 @@ fn a_folder_of_memory_in_dev_holds_files_like_any_other() {
     let arguments = format!("tile --size 16 --iterations 2 --integrands 1 --out {}", out.display());
     let printed = place.succeed(&arguments);
     assert!(printed.contains("t.nft"), "{printed}");
-    assert!(Sidecar::read(&out).unwrap().is_some());
+    assert!(sidecar::read::<Sidecar>(&out).unwrap().is_some());
     std::fs::write(&out, "old").unwrap();
     place.succeed(&arguments);
     assert!(std::fs::read(&out).unwrap().starts_with(b"\x8eNFT"));
@@ -107,7 +107,7 @@ fn the_command_of_a_sidecar_is_one_of_a_shell() {
     ] {
         let mut command = place.command("tile --size 16 --iterations 1 --integrands 1 --out");
         assert!(command.arg(name).output().unwrap().status.success());
-        let sidecar = Sidecar::read(&place.path(name)).unwrap().unwrap();
+        let sidecar = sidecar::read::<Sidecar>(&place.path(name)).unwrap().unwrap();
         assert!(sidecar.command.ends_with(words), "{}", sidecar.command);
         assert!(!sidecar.command.contains("--reconstruction"), "{}", sidecar.command);
     }
@@ -119,7 +119,7 @@ fn reconstruction_is_the_second_factor_unless_given() {
     let make = |options: &str| {
         let arguments = "tile --size 16 --spp 4 --iterations 8 --integrands 1 --quiet --out t.nft --kernel";
         place.succeed(&format!("{arguments} {options}"));
-        (place.read("t.nft"), Sidecar::read(&place.path("t.nft")).unwrap().unwrap().command)
+        (place.read("t.nft"), sidecar::read::<Sidecar>(&place.path("t.nft")).unwrap().unwrap().command)
     };
     let (gaussian, command) = make("box*gaussian:0.7");
     assert!(!command.contains("--reconstruction"), "{command}");
@@ -204,7 +204,7 @@ fn a_pixel_that_is_no_density_is_refused_inverted_too() {
         picture.put_pixel(3, 5, Rgb([value; 3]));
         picture.save(place.path(name)).unwrap();
         for invert in [false, true] {
-            let found = read::density(&place.read(name), name.as_ref(), 16, invert);
+            let found = read::density(&place.path(name), 16, invert);
             let message = found.map(|_| ()).unwrap_err().to_string();
             assert!(message.contains("column 3, row 5"), "{message}");
         }
@@ -219,13 +219,13 @@ fn transparent_halves() {
         .save(place.path("half.exr"))
         .unwrap();
     let centre = |invert| {
-        let target = read::density(&place.read("half.exr"), "half.exr".as_ref(), 16, invert).unwrap();
+        let (target, _) = read::density(&place.path("half.exr"), 16, invert).unwrap();
         let (mut means, mut density) = ([0.0; 1000], [0.0; 1000]);
         target.bins(&[1.0, 0.0], &mut means, &mut density, &mut Vec::new());
         means.iter().sum::<f32>() / 1000.0
     };
     assert!((centre(false) - 0.5).abs() < 0.01 && (centre(true) - 0.75).abs() < 0.01);
-    let photo = Photo::read(&place.path("half.exr")).unwrap();
+    let (photo, _) = read::photo(&place.path("half.exr")).unwrap();
     assert!(photo.pixels[0][0] > 0.999 && photo.pixels[7][0] < 0.8);
     // One that is reduced: opaque white, or a grey, beside transparent black.
     for (grey, mean) in [(255, 1.0), (51, 0.6)] {
@@ -249,9 +249,10 @@ fn photographs_stand_upright() {
     let turned = b"MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0";
     encoder.set_exif_metadata(turned.to_vec()).unwrap();
     encoder.encode_image(&GrayImage::from_fn(64, 32, |x, _| Luma([if x < 32 { 0 } else { 255 }]))).unwrap();
-    let picture = read::image(&place.path("phone.jpg")).unwrap().into_luma8();
-    assert_eq!(picture.dimensions(), (32, 64));
-    assert!(picture.get_pixel(16, 4).0[0] < 64 && picture.get_pixel(16, 60).0[0] > 192);
+    let (photo, _) = read::photo(&place.path("phone.jpg")).unwrap();
+    assert_eq!((photo.width, photo.height), (32, 64));
+    let grey = |x: usize, y: usize| photo.pixels[y * 32 + x][0];
+    assert!(grey(16, 4) < 0.25 && grey(16, 60) > 0.75);
 }
 
 #[test]

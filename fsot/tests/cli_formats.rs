@@ -93,9 +93,6 @@ fn textures_have_the_documented_layout() {
         assert_eq!(png.get_pixel(texel.0, texel.1).0[dim % 4], value);
         assert_eq!(exr.get_pixel(texel.0, texel.1).0[dim % 4], (f32::from(value) + 0.5) / 65536.0);
     }
-    let short = Tile::resume(view.shape(), &payload[1..]);
-    assert!(tile::png(&short).is_err() && tile::exr(&short).is_err());
-    assert!(tile::c_header(&short, "t").is_err() && tile::rust(&short, "t").is_err());
 }
 
 #[test]
@@ -118,13 +115,13 @@ fn source_code_compiles_and_holds_the_numbers() {
     let view = view_of([4, 2, 2, 1, 16], &payload);
     for (name, array) in [("linux", "tile_linux"), ("UINTPTR_T", "tile_uintptr_t"), ("while", "tile_while"), ("t", "t")]
     {
-        let text = String::from_utf8(tile::c_header(&view, name).unwrap()).unwrap();
+        let text = String::from_utf8(tile::c_header(&view, name)).unwrap();
         assert!(text.contains(&format!("static const uint16_t {array}[64] = {{")), "{text}");
     }
     let run = |command: &mut Command| assert!(command.current_dir(folder.path()).status().unwrap().success());
     let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
 
-    write("tile.h", &tile::c_header(&view, "4_2SPP-2D").unwrap());
+    write("tile.h", &tile::c_header(&view, "4_2SPP-2D"));
     write(
         "main.c",
         b"#include \"tile.h\"\nint main(void) { return !(TILE_4_2SPP_2D_SIZE == 4 && TILE_4_2SPP_2D_SPP == 2 && \
@@ -138,7 +135,7 @@ fn source_code_compiles_and_holds_the_numbers() {
         run(&mut Command::new(folder.path().join("c")));
     }
 
-    write("tile.rs", &tile::rust(&view, "4_2SPP_2D").unwrap());
+    write("tile.rs", &tile::rust(&view, "4_2SPP_2D"));
     write(
         "main.rs",
         b"mod tile;\nfn main() { assert_eq!((tile::SIZE, tile::TILE.len(), tile::TILE[63]), (4, 64, 63000)); }\n",

@@ -48,8 +48,7 @@ fn pictures_end_in_what_they_are() {
     place.write("p.txt", "0.1 0.2\n0.7 0.4\n0.3 0.9\n0.6 0.6\n");
     GrayImage::from_fn(9, 9, |x, _| Luma([x as u8 * 20])).save(place.path("in.png")).unwrap();
     for (arguments, message) in [
-        ("spectrum p.txt --out s.svg", "s.svg would be PNG, not svg: end its name in .png"),
-        ("spectrum p.txt --out s.jpg", "not jpg"),
+        ("spectrum p.txt --out s.jpg", "s.jpg would be PNG or SVG, not jpg: end its name in .png or .svg"),
         ("measure p.txt --prefix --plot p.jpeg", "p.jpeg would be PNG or SVG, not jpeg: end its name in .png or .svg"),
         ("points -n 9 --out o.txt --png p.svg", "p.svg would be PNG"),
         ("points -n 9 --out o.txt --svg p.png", "p.png would be SVG"),

@@ -4,7 +4,7 @@
 
 use crate::cli_support::{Place, error};
 use fsot::export::nft::TileFile;
-use fsot::export::sidecar::Sidecar;
+use fsot::export::sidecar::{self, Sidecar};
 use fsot::output::Outputs;
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -117,7 +117,7 @@ fn tiles_made_at_once_under_one_name_are_one_of_them() {
             assert!(output.status.success(), "{}", error(&output));
         }
         let tile = TileFile::read(&place.path("t.nft")).unwrap();
-        assert!(Sidecar::read(&place.path("t.nft")).unwrap().unwrap().describes(tile.bytes()));
+        assert!(sidecar::read::<Sidecar>(&place.path("t.nft")).unwrap().unwrap().describes(tile.bytes()));
         assert_eq!(place.names(), ["t.nft", "t.toml"]);
     }
 }

@@ -2,8 +2,9 @@
 
 use crate::cli_support::Place;
 use fsot::export::nft::TileFile;
-use fsot::export::sidecar::{Quality, Row, Sidecar};
-use fsot::tile::presets;
+use fsot::export::sidecar::{self, Quality, Row, Sidecar};
+use fsot::tile::preset;
+use noisefloor::tile::Builtin;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -47,7 +48,7 @@ fn assert_close(made: &Quality, shipped: &Quality) {
 
 #[test]
 fn every_preset_is_shipped_and_nothing_else() {
-    let mut presets = presets::NAMES.to_vec();
+    let mut presets = Builtin::ALL.map(Builtin::name).to_vec();
     presets.sort();
     assert_eq!(names("nft"), presets);
     presets.push("nested_32");
@@ -57,14 +58,15 @@ fn every_preset_is_shipped_and_nothing_else() {
 
 #[test]
 fn sidecars_describe_their_tiles() {
-    for name in names("nft") {
-        let path = tile(&name);
+    for builtin in Builtin::ALL {
+        let name = builtin.name();
+        let path = tile(name);
         let file = TileFile::read(&path).unwrap();
-        let sidecar = Sidecar::read(&path).unwrap().unwrap_or_else(|| panic!("{name} has no sidecar"));
+        let sidecar = sidecar::read::<Sidecar>(&path).unwrap().unwrap_or_else(|| panic!("{name} has no sidecar"));
         assert!(sidecar.describes(file.bytes()), "{name}");
         assert_eq!(sidecar.kernel, file.header().kernel(), "{name}");
         assert_eq!(sidecar.seed, file.header().seed(), "{name}");
-        let problem = presets::preset(&name).unwrap();
+        let problem = preset(builtin);
         assert_eq!((sidecar.seed, sidecar.iterations), (problem.seed, problem.iterations), "{name}");
         assert!(sidecar.command.starts_with(&format!("fsot tile --preset {name} ")), "{}", sidecar.command);
         assert!(sidecar.command.ends_with(&format!(" --out {name}.nft")), "{}", sidecar.command);
@@ -74,11 +76,11 @@ fn sidecars_describe_their_tiles() {
 #[test]
 fn the_smallest_tile_is_made_again_with_the_same_bytes() {
     let path = tile("64_1SPP_2D");
-    let shipped = Sidecar::read(&path).unwrap().unwrap();
+    let shipped = sidecar::read::<Sidecar>(&path).unwrap().unwrap();
     let place = Place::new();
     place.succeed(shipped.command.strip_prefix("fsot ").unwrap());
     assert!(place.read("64_1SPP_2D.nft") == fs::read(&path).unwrap(), "other bytes: run cargo xtask tiles and say why");
-    let made = Sidecar::read(&place.path("64_1SPP_2D.nft")).unwrap().unwrap();
+    let made = sidecar::read::<Sidecar>(&place.path("64_1SPP_2D.nft")).unwrap().unwrap();
     assert_eq!(made.command, shipped.command);
     assert_eq!((made.seed, made.iterations), (shipped.seed, shipped.iterations));
     assert_eq!(made.kernel, shipped.kernel);

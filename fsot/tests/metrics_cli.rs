@@ -67,6 +67,7 @@ fn measures_points_classes_and_tiles() {
     {
         assert!(report.pointer(path).is_some_and(Value::is_f64), "{path} in {report}");
     }
+    assert_eq!(report["spectra"][0]["axes"], serde_json::json!([1, 2]));
     assert_eq!(json["files"][1]["classes"][1]["class"], "blue");
     assert_eq!(json["files"][1]["classes"][1]["report"]["points"], 32);
     let quick: Value = serde_json::from_str(&succeed(&["measure", "--json", "--quick", &plain])).unwrap();
@@ -138,12 +139,15 @@ fn draws_spectra() {
     let folder = TempDir::new().unwrap();
     let files = [1, 2].map(|seed| file(&folder, &format!("{seed}.txt"), &text(&random(64, 3, seed), |_| None)));
     let out = folder.path().join("spectrum.png");
-    succeed(&["spectrum", "--axes", "3", "1", "--svg", "--out", out.to_str().unwrap(), &files[0], &files[1]]);
+    let vector = folder.path().join("spectrum.svg");
+    for out in [&out, &vector] {
+        succeed(&["spectrum", "--axes", "3", "1", "--out", out.to_str().unwrap(), &files[0], &files[1]]);
+    }
     let picture = image::open(&out).unwrap().to_rgb8();
     assert!(
         picture.width() > 1000 && picture.pixels().any(|p| p.0 == [255; 3]) && picture.pixels().any(|p| p.0[0] < 60)
     );
-    let svg = std::fs::read_to_string(out.with_extension("svg")).unwrap();
+    let svg = std::fs::read_to_string(vector).unwrap();
     assert!(svg.starts_with("<svg") && svg.contains("data:image/png;base64,") && svg.contains("anisotropy"));
     let tile = folder.path().join("tile.png");
     succeed(&["spectrum", "--size", "8", "--integrands", "4", "--out", tile.to_str().unwrap(), &files[0]]);
@@ -187,8 +191,9 @@ fn bad_input_is_refused_and_nothing_written() {
     fail(&folder, &["measure", &tile], &["tile.nft"]);
     fail(&folder, &["measure", "--size", "7", &good], &["64 points", "7x7"]);
     fail(&folder, &["measure", "--size", "0", &good], &["0x0"]);
-    fail(&folder, &["measure", "--size", "8", "--ema", "2", &good], &["alpha 2"]);
-    fail(&folder, &["measure", "--size", "8", "--ema", "-1", &good], &["alpha -1"]);
+    fail(&folder, &["measure", "--size", "8", "--ema", "2", &good], &["alpha is 2; use 1e-6 to 1"]);
+    fail(&folder, &["measure", "--size", "8", "--ema", "-1", &good], &["alpha is -1;"]);
+    fail(&folder, &["measure", "--size", "8", "--ema", "1e-7", &good], &["alpha is 0.0000001; use 1e-6 to 1"]);
     fail(&folder, &["measure", "--prefix", &good, &more], &["different sizes"]);
     fail(&folder, &["measure", "--prefix", "--plot", "/nowhere/plot.png", &good], &["/nowhere"]);
     fail(&folder, &["spectrum", "--out", out, &good, &more], &["as many points"]);

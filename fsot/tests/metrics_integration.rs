@@ -120,8 +120,8 @@ fn logarithmic_spacing() {
 
 #[test]
 fn half_planes_of_tiles_lie_through_uniform_points() {
-    assert_eq!(tile::integrands(Family::Gaussian, 2, 5).len(), 5);
+    assert_eq!(tile::integrands(Family::Gaussian, 2, 0, 5).len(), 5);
     // Integrals of half-spaces through uniform points are spread over all of (0, 1).
-    let integrals: Vec<f64> = tile::integrands(Family::HalfSpace, 2, 500).iter().map(|i| i.integral).collect();
+    let integrals: Vec<f64> = tile::integrands(Family::HalfSpace, 2, 0, 500).iter().map(|i| i.integral).collect();
     assert_mean(&integrals, 0.5, "half-planes through uniform points");
 }

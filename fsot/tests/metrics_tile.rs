@@ -109,7 +109,7 @@ fn energies_are_those_of_direct_convolution() {
         assert_eq!(report.prefixes.last().unwrap().spp, spp);
         for prefix in &report.prefixes {
             let expected = FAMILIES.map(|family| {
-                let list = integrands(family, dims, 6);
+                let list = integrands(family, dims, 0, 6);
                 slow(size, prefix.spp, &list, 1.0, |i| vec![tile.errors(i, 0, prefix.spp)])
             });
             assert_energies(&prefix.energies, expected, &format!("{size} pixels, {} of {spp} samples", prefix.spp));
@@ -147,8 +147,8 @@ fn marginals_are_tiles_of_two_dimensions() {
 fn frames_and_moving_averages_are_those_of_direct_filtering() {
     let (size, spp, frames, alpha) = (6, 2, 5, 0.3);
     let tile = Tile::random(size, spp, 2, frames, 8);
-    let report = tile.measure(4, &[alpha, 1.0]);
-    let list = |family| integrands(family, 2, 4);
+    let report = tile.measure(4, &[alpha, 1.0, 1e-6]);
+    let list = |family| integrands(family, 2, 0, 4);
     for (frame, energies) in report.per_frame.iter().enumerate() {
         let expected = FAMILIES.map(|f| slow(size, spp, &list(f), 1.0, |i| vec![tile.errors(i, frame, spp)]));
         assert_energies(energies, expected, &format!("frame {frame}"));
@@ -158,6 +158,13 @@ fn frames_and_moving_averages_are_those_of_direct_filtering() {
     assert_energies(&report.prefixes.last().unwrap().energies, mean, "mean over frames");
     // An average of alpha 1 keeps the newest frame.
     assert_energies(&report.temporal[1].energies, mean, "alpha 1");
+    // One of almost 0 is the mean over all of them.
+    let still = |i: &Integrand| {
+        let errors = all(i);
+        vec![(0..size * size).map(|pixel| errors.iter().map(|e| e[pixel]).sum::<f64>() / frames as f64).collect()]
+    };
+    let expected = FAMILIES.map(|f| slow(size, spp, &list(f), 1.0 / frames as f64, still));
+    assert_energies(&report.temporal[2].energies, expected, "alpha 1e-6");
     // The average of the repeated sequence, after so many periods that its start is forgotten.
     let filtered = |i: &Integrand| {
         let errors = all(i);
@@ -206,7 +213,7 @@ fn the_error_spectrum_is_that_of_the_definition() {
     assert_eq!((spectrum.side, spectrum.unit, spectrum.realisations), (size, size as f64, 2));
     let pairs: Vec<Vec<Integrand>> = FAMILIES
         .iter()
-        .flat_map(|&f| integrands(f, 2, count).chunks(2).map(<[_]>::to_vec).collect::<Vec<_>>())
+        .flat_map(|&f| integrands(f, 2, 0, count).chunks(2).map(<[_]>::to_vec).collect::<Vec<_>>())
         .collect();
     for (i, power) in spectrum.power.iter().enumerate() {
         let (kx, ky) = ((i % size) as f64 - 3.0, (i / size) as f64 - 3.0);

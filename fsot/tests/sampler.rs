@@ -11,9 +11,7 @@ fn small() -> SamplerProblem {
 
 fn made(problem: SamplerProblem) -> SamplerTable {
     let mut optimizer = SamplerOptimizer::new(problem).unwrap();
-    while optimizer.iteration() < optimizer.iterations() {
-        optimizer.step();
-    }
+    optimizer.run();
     optimizer.table()
 }
 
@@ -113,9 +111,7 @@ fn problems_that_are_none_are_refused() {
 fn the_energies_fall() {
     let mut optimizer = SamplerOptimizer::new(SamplerProblem { candidates: 12, ..small() }).unwrap();
     let before = optimizer.measure();
-    while optimizer.iteration() < optimizer.iterations() {
-        optimizer.step();
-    }
+    optimizer.run();
     let after = optimizer.measure();
     for (before, after) in before.filtered.iter().zip(&after.filtered) {
         assert!(*after < 0.97 * before, "{after} of {before}");

@@ -1,6 +1,7 @@
 //! Kernels: what they are, how they are written, what is refused.
 
-use fsot::tile::{Kernel, TemporalKernel, TileProblem, presets};
+use fsot::tile::{Kernel, TemporalKernel, TileProblem, preset};
+use noisefloor::tile::Builtin;
 
 #[test]
 fn the_perceptual_kernel_is_a_disc_of_radius_6() {
@@ -127,8 +128,8 @@ fn the_eye_answers_within_a_quarter_of_a_second() {
 
 #[test]
 fn every_shipped_tile_is_what_its_name_says() {
-    for name in presets::NAMES {
-        let problem = presets::preset(name).unwrap();
+    for tile in Builtin::ALL {
+        let (name, problem) = (tile.name(), preset(tile));
         problem.validate().unwrap();
         let TileProblem { size, spp, dims, .. } = problem;
         assert!(name.starts_with(&format!("{size}_{spp}SPP_{dims}D")), "{name}");
@@ -136,14 +137,4 @@ fn every_shipped_tile_is_what_its_name_says() {
         assert_eq!(problem.temporal.is_some(), name.ends_with("TEMPORAL"));
         assert_eq!(problem.frames > 1, name.ends_with("TEMPORAL"));
     }
-    assert!(presets::preset("128_2SPP_2D").is_none());
-}
-
-#[test]
-fn the_presets_are_the_tiles_of_the_core_crate() {
-    let mut names = presets::NAMES;
-    let mut builtin = noisefloor::tile::Builtin::ALL.map(noisefloor::tile::Builtin::name);
-    names.sort_unstable();
-    builtin.sort_unstable();
-    assert_eq!(names, builtin);
 }

@@ -1,16 +1,17 @@
 //! What optimised tiles reach: energies of the error image relative to white noise, as docs/metrics.md defines them.
 
 use fsot::metrics::{TileOptions, TileReport, TileView, measure_tile};
+use fsot::run::Optimization;
 use fsot::tile::{Projections, TemporalKernel, TileOptimizer, TileProblem, TileSamples};
 
 fn measure(tile: &TileSamples) -> TileReport {
-    let TileSamples { size, spp, dims, frames, .. } = *tile;
-    let view = TileView::new(size, spp, dims, frames, &tile.coordinates).unwrap();
-    measure_tile(&view, &TileOptions { integrands: 128, alphas: vec![0.3] }).unwrap()
+    measure_tile(&TileView::of(tile).unwrap(), &TileOptions { integrands: 128, alphas: vec![0.3] }).unwrap()
 }
 
 fn optimised(problem: TileProblem) -> TileReport {
-    measure(&TileOptimizer::new(problem).unwrap().run())
+    let mut optimizer = TileOptimizer::new(problem).unwrap();
+    optimizer.run();
+    measure(&optimizer.samples())
 }
 
 /// Seed and integrands are fixed, so the figures are too: each limit is what was measured, rounded up by some percent

@@ -3,8 +3,9 @@
 //! Few random bytes have the right checksum, so checkpoints are also read with theirs put right.
 #![no_main]
 
-use fsot::checkpoint::{Problem, digest, resume};
+use fsot::checkpoint::{Problem, resume};
 use fsot::class::ClassFile;
+use fsot::digest::digest;
 use fsot::run::Optimization;
 use libfuzzer_sys::fuzz_target;
 use std::path::Path;

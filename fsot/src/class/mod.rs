@@ -1,4 +1,4 @@
-//! Classes (5.3): which points shall follow which distribution, and how much it counts.
+//! Classes (section 5.3): which points shall follow which distribution, and how much it counts.
 
 mod file;
 mod filter;

@@ -1,6 +1,6 @@
 //! The file `NAME.toml` beside a tile `NAME.nft`: how it was made and how good it is.
 
-use crate::checkpoint::digest;
+use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::metrics::TileReport;
 use crate::metrics::tile::Energies;
@@ -8,6 +8,7 @@ use crate::output::is_stream;
 use crate::read;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// A sidecar.
@@ -96,25 +97,24 @@ impl Quality {
 }
 
 impl Sidecar {
-    /// Reads the sidecar of a tile; none if there is no such file.
-    ///
-    /// # Errors
-    /// The file cannot be read or is no sidecar.
-    pub fn read(tile: &Path) -> Result<Option<Sidecar>> {
-        let path = path(tile);
-        let text = match read::text(&path, "a sidecar") {
-            Err(Error::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            text => text?,
-        };
-        toml::from_str(&text)
-            .map(Some)
-            .map_err(|error| Error::Input(format!("{} is no sidecar: {error}", path.display())))
-    }
-
     /// Whether the bytes of a tile's file are those described.
     pub fn describes(&self, tile: &[u8]) -> bool {
         self.sha256 == digest(tile)
     }
+}
+
+/// Reads the sidecar, of the kind `S`, of a tile or a table; none if there is no such file.
+///
+/// # Errors
+/// The file cannot be read or is no such sidecar.
+pub fn read<S: DeserializeOwned>(described: &Path) -> Result<Option<S>> {
+    let path = path(described);
+    let text = match read::text(&path, "a sidecar") {
+        Err(Error::Io { source, .. }) if source.kind() == ErrorKind::NotFound => return Ok(None),
+        text => text?,
+    };
+    let sidecar = toml::from_str(&text);
+    sidecar.map(Some).map_err(|error| Error::Input(format!("{} is no such sidecar: {error}", path.display())))
 }
 
 /// Whether a sidecar of the kind `S` may be written at `path`: nothing is there, or another of them.

@@ -5,7 +5,6 @@
 //! memory that is the layout of a texture array. Red, green, blue and alpha are the coordinates in order. An integer
 //! texel v of b bits stands for the coordinate (v + 0.5) / 2^b, never 1; a GPU that reads v / (2^b - 1) must undo that.
 
-use crate::counted::counted;
 use crate::error::{Error, Result};
 use image::{DynamicImage, ImageBuffer, ImageFormat};
 use noisefloor::tile::{Shape, Tile};
@@ -24,20 +23,6 @@ const KEYWORDS: &str = "alignas alignof and and_eq asm auto bitand bitor bool br
     requires restrict return short signed sizeof static static_assert static_cast struct switch template this \
     thread_local throw true try typedef typeid typename typeof typeof_unqual union unsigned using virtual void \
     volatile while xor xor_eq linux unix";
-
-/// # Errors
-/// The payload has another length than the shape says.
-fn check(tile: &Tile<'_>) -> Result<()> {
-    let shape = tile.shape();
-    Tile::new(shape, tile.payload()).map(|_| ()).map_err(|_| {
-        Error::Input(format!(
-            "a tile of {} of {} bits cannot have {}",
-            counted(shape.coordinates(), "coordinate"),
-            shape.bits,
-            counted(tile.payload().len(), "byte")
-        ))
-    })
-}
 
 fn count(tile: &Tile<'_>) -> usize {
     tile.shape().coordinates() as usize
@@ -81,9 +66,8 @@ fn texture<T: Copy>(tile: &Tile<'_>, channels: usize, absent: T, value: impl Fn(
 /// A PNG texture with the tile's bits per channel: grey for 1 coordinate, RGB for 2 (blue is 0) and 3, RGBA for more.
 ///
 /// # Errors
-/// The payload has another length than the shape says.
+/// A picture of this size cannot be encoded.
 pub fn png(tile: &Tile<'_>) -> Result<Vec<u8>> {
-    check(tile)?;
     let channels = match tile.shape().dims {
         1 => 1,
         2 | 3 => 3,
@@ -111,9 +95,8 @@ pub fn png(tile: &Tile<'_>) -> Result<Vec<u8>> {
 /// for more.
 ///
 /// # Errors
-/// The payload has another length than the shape says.
+/// As [`png`].
 pub fn exr(tile: &Tile<'_>) -> Result<Vec<u8>> {
-    check(tile)?;
     let coordinate = |integer| coordinate(tile, integer);
     let picture = if tile.shape().dims <= 3 {
         let (width, height, texels) = texture(tile, 3, 0.0, coordinate);
@@ -134,11 +117,7 @@ fn encode(picture: Option<DynamicImage>, format: ImageFormat) -> Result<Vec<u8>>
 
 /// C99 and C++: the dimensions as macros, the integers as a static constant array `NAME`, or `tile_NAME` if the
 /// language or `stdint.h` may have given the name a meaning.
-///
-/// # Errors
-/// The payload has another length than the shape says.
-pub fn c_header(tile: &Tile<'_>, name: &str) -> Result<Vec<u8>> {
-    check(tile)?;
+pub fn c_header(tile: &Tile<'_>, name: &str) -> Vec<u8> {
     let mut name = identifier(name).to_ascii_lowercase();
     if name.ends_with("_t") || KEYWORDS.split_whitespace().any(|word| word == name) {
         name.insert_str(0, "tile_");
@@ -155,16 +134,12 @@ pub fn c_header(tile: &Tile<'_>, name: &str) -> Result<Vec<u8>> {
     }
     write!(text, "\nstatic const uint{}_t {name}[{}] = {{\n", tile.shape().bits, count(tile)).ok();
     integers(tile, &mut text);
-    write!(text, "}};\n\n#endif\n").ok();
-    Ok(text.into_bytes())
+    text.push_str("};\n\n#endif\n");
+    text.into_bytes()
 }
 
 /// A Rust module: the dimensions as constants, the integers as a static array `TILE`.
-///
-/// # Errors
-/// The payload has another length than the shape says.
-pub fn rust(tile: &Tile<'_>, name: &str) -> Result<Vec<u8>> {
-    check(tile)?;
+pub fn rust(tile: &Tile<'_>, name: &str) -> Vec<u8> {
     let mut text = format!(
         "//! Sample tile {}: `TILE` is `[FRAMES][SIZE (y)][SIZE (x)][SPP][DIMS]`, coordinate = (integer + 0.5) \
          / 2^{}, in [0, 1).\n\n",
@@ -183,7 +158,7 @@ pub fn rust(tile: &Tile<'_>, name: &str) -> Result<Vec<u8>> {
     .ok();
     integers(tile, &mut text);
     text.push_str("];\n");
-    Ok(text.into_bytes())
+    text.into_bytes()
 }
 
 fn fields(tile: &Tile<'_>) -> [(&'static str, u32); 5] {

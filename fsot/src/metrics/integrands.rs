@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn normals_of_tiles_integrands_keep_away_from_the_axes() {
         for (dims, smallest) in [(2, 1e-3), (3, 0.03)] {
-            for integrand in tile::integrands(Family::HalfSpace, dims, 1000) {
+            for integrand in tile::integrands(Family::HalfSpace, dims, 0, 1000) {
                 let Shape::HalfSpace { normal, .. } = integrand.shape else { panic!("{integrand:?}") };
                 assert!(normal.len() == dims && normal.iter().all(|a| a.abs() >= smallest), "{normal:?}");
             }

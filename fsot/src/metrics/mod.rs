@@ -26,6 +26,7 @@ pub use tile::{TileOptions, TileReport, TileView, error_spectrum, measure_energi
 
 use crate::error::{Error, Result};
 use crate::points::Points;
+use serde::{Serialize, Serializer};
 
 /// Whether points can be measured: 1 to 8 coordinates each, at least one point, every coordinate in [0, 1].
 pub fn check(points: &Points) -> Result<()> {
@@ -39,6 +40,11 @@ pub fn check(points: &Points) -> Result<()> {
         return Err(Error::input(format!("{} points: at most {} are supported", points.len(), u32::MAX)));
     }
     check_coordinates(points.dims(), points.coordinates())
+}
+
+/// Axes as they are counted outside the library.
+fn from_one<S: Serializer>(axes: &[usize; 2], serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    axes.map(|axis| axis + 1).serialize(serializer)
 }
 
 fn check_coordinates(dims: usize, coordinates: &[f32]) -> Result<()> {

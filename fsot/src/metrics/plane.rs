@@ -66,9 +66,9 @@ pub(crate) fn over_time(images: &mut [Plane]) {
 /// The squared frequency response of y_t = alpha x_t + (1 - alpha) y_(t-1) for signals of period `frames`.
 pub(crate) fn moving_average_response(alpha: f64, frames: usize) -> Vec<f64> {
     let response = |k: usize| {
-        let keep = 1.0 - alpha;
-        let angle = std::f64::consts::TAU * k as f64 / frames as f64;
-        alpha * alpha / (1.0 - 2.0 * keep * libm::cos(angle) + keep * keep)
+        // |1 - keep exp(i angle)|^2 with keep = 1 - alpha, of which nothing cancels where alpha is small.
+        let half = libm::sin(std::f64::consts::PI * k as f64 / frames as f64);
+        alpha * alpha / (alpha * alpha + 4.0 * (1.0 - alpha) * half * half)
     };
     (0..frames).map(response).collect()
 }

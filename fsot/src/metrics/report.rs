@@ -32,7 +32,8 @@ pub struct PointReport {
 /// The spectrum of two coordinates.
 #[derive(Clone, Debug, Serialize)]
 pub struct PlaneSpectrum {
-    /// Which coordinates.
+    /// Which coordinates, from 0; in JSON from 1.
+    #[serde(serialize_with = "super::from_one")]
     pub axes: [usize; 2],
     /// Its summary.
     #[serde(flatten)]

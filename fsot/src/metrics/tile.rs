@@ -4,7 +4,8 @@ use super::integrands::{Family, Integrand};
 use super::plane::{Plane, Transform};
 use super::spectrum::Spectrum;
 use crate::counted;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
+use crate::tile::TileSamples;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex;
 use serde::Serialize;
@@ -12,6 +13,8 @@ use serde::Serialize;
 /// Integrands are shared out in this many parts, whose sums are then added in order.
 const PARTS: usize = 16;
 const SEED: u64 = 0x711e;
+/// The least weight of the newest frame: that of [`TemporalKernel::Ema`](crate::tile::TemporalKernel::Ema).
+const LEAST_ALPHA: f64 = 1e-6;
 
 /// The samples of a tile: `coordinates` is laid out `[frame][y][x][sample][dim]`.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +48,12 @@ impl<'a> TileView<'a> {
         }
         super::check_coordinates(dims, coordinates)?;
         Ok(TileView { size, spp, dims, frames, coordinates })
+    }
+
+    /// A view of samples. Errors: as [`new`](TileView::new).
+    pub fn of(samples: &'a TileSamples) -> Result<TileView<'a>> {
+        let TileSamples { size, spp, dims, frames, coordinates } = samples;
+        TileView::new(*size, *spp, *dims, *frames, coordinates)
     }
 
     /// Numbers of samples whose error is measured: the powers of two up to the tile's, and the tile's own.
@@ -95,7 +104,8 @@ pub struct PrefixEnergies {
 /// Energies of two of the tile's dimensions.
 #[derive(Clone, Debug, Serialize)]
 pub struct MarginalEnergies {
-    /// Which dimensions.
+    /// Which dimensions, from 0; in JSON from 1.
+    #[serde(serialize_with = "super::from_one")]
     pub axes: [usize; 2],
     /// Their energies by number of samples.
     pub prefixes: Vec<PrefixEnergies>,
@@ -139,7 +149,7 @@ pub struct TileReport {
 pub struct TileOptions {
     /// Random integrands of each family, at least 1; the published figures use 512.
     pub integrands: usize,
-    /// Weights of the newest frame, in (0, 1], of the exponential moving averages applied to tiles of several frames.
+    /// Weights of the newest frame, 1e-6 to 1, of the exponential moving averages applied to tiles of several frames.
     pub alphas: Vec<f64>,
 }
 
@@ -156,10 +166,8 @@ impl TileOptions {
         if self.integrands == 0 {
             return Err(Error::input("0 integrands: give at least 1"));
         }
-        if let Some(alpha) = self.alphas.iter().find(|&&a| !(a > 0.0 && a <= 1.0)) {
-            return Err(Error::input(format!("a moving average of alpha {alpha}: it must be above 0 and at most 1")));
-        }
-        Ok(())
+        let range = LEAST_ALPHA..=1.0;
+        self.alphas.iter().try_for_each(|alpha| check(range.contains(alpha), "alpha", alpha, "1e-6 to 1"))
     }
 }
 
@@ -236,20 +244,16 @@ pub fn error_spectrum(tile: &TileView, integrands: usize) -> Result<Spectrum> {
     Ok(Spectrum::new(size, power, size as f64, tile.frames))
 }
 
-/// The integrands that tiles of `dims` dimensions are measured with. Normals of half-spaces have no component below
-/// .001 (.03 in more than two dimensions).
-pub fn integrands(family: Family, dims: usize, count: usize) -> Vec<Integrand> {
-    numbered(family, dims, 0, count)
-}
-
-fn numbered(family: Family, dims: usize, first: u64, count: usize) -> Vec<Integrand> {
+/// The integrands that tiles of `dims` dimensions are measured with, from number `first` on. Normals of half-spaces
+/// have no component below .001 (.03 in more than two dimensions).
+pub fn integrands(family: Family, dims: usize, first: u64, count: usize) -> Vec<Integrand> {
     let smallest = if dims > 2 { 0.03 } else { 1e-3 };
     (first..first + count as u64).map(|i| Integrand::random(family, dims, smallest, SEED, i)).collect()
 }
 
 /// Two integrands share one complex transform. An odd number is rounded up.
 fn pairs_of(family: Family, axes: &[usize], first: u64, count: usize) -> Vec<[Integrand; 2]> {
-    let all = numbered(family, axes.len(), first, count.next_multiple_of(2));
+    let all = integrands(family, axes.len(), first, count.next_multiple_of(2));
     all.chunks_exact(2).map(|pair| [pair[0].clone(), pair[1].clone()]).collect()
 }
 

@@ -2,6 +2,7 @@
 
 use super::group::Group;
 use super::problem::Domain;
+use crate::random::shuffle;
 use noisefloor::rng::Rng;
 use rayon::prelude::*;
 
@@ -31,9 +32,7 @@ pub(super) fn cut<const D: usize>(
     let mut pieces = vec![Piece { start: [0.0; D], lengths: [1.0; D], members }];
     // Which axis comes first must not show.
     let mut axes: [usize; D] = std::array::from_fn(|k| k);
-    for k in (1..D).rev() {
-        axes.swap(k, rng.below(k as u32 + 1) as usize);
-    }
+    shuffle(&mut axes, rng);
     for axis in axes {
         let first = rng.uniform_f64() + 0.5;
         let place = |k: usize| match domain {

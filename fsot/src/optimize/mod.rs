@@ -1,4 +1,4 @@
-//! The optimiser: stochastic descent on the sliced multi-class barycenter (5.4).
+//! The optimiser: stochastic descent on the sliced multi-class barycenter (section 5.4).
 
 mod check;
 mod cut;
@@ -24,8 +24,6 @@ use crate::run::Optimization;
 /// Takes all steps of an optimisation, on the threads of the current rayon pool.
 pub fn optimize(problem: Problem) -> Result<Points> {
     let mut optimizer = Optimizer::new(problem)?;
-    while optimizer.iteration() < optimizer.iterations() {
-        optimizer.step();
-    }
+    optimizer.run();
     Ok(optimizer.points())
 }

@@ -62,13 +62,9 @@ impl Drawing {
         Drawing { size, paper: WHITE, blend: Blend::Over, linear: false, marks: Vec::new() }
     }
 
-    /// Draws a disc for each of the points, which have two coordinates (more are not looked at), scaled by `scale`.
-    pub fn dots<'a>(&mut self, points: impl IntoIterator<Item = &'a [f32]>, scale: f32, radius: f32, colour: Colour) {
-        self.marks.extend(
-            points.into_iter().filter(|point| point.len() >= 2).map(|point| Mark {
-                shape: Shape::Disc { centre: [point[0] * scale, point[1] * scale], radius },
-                colour,
-            }),
-        );
+    /// Draws a disc for each of the points, which have two coordinates (more are not looked at).
+    pub fn dots<'a>(&mut self, points: impl IntoIterator<Item = &'a [f32]>, radius: f32, colour: Colour) {
+        let centres = points.into_iter().filter_map(|point| point.first_chunk());
+        self.marks.extend(centres.map(|&centre| Mark { shape: Shape::Disc { centre, radius }, colour }));
     }
 }

@@ -4,7 +4,6 @@ use super::colour::encode;
 use super::resample::resample;
 use crate::error::{Error, Result};
 use image::{DynamicImage, GenericImageView, Rgba, Rgba32FImage};
-use std::path::Path;
 
 /// Larger pictures are reduced to about this many pixels when they are read: more than any number of dots can show.
 const MAX_PIXELS: f64 = 8e6;
@@ -21,16 +20,6 @@ pub struct Photo {
 }
 
 impl Photo {
-    /// Reads a PNG, JPEG or OpenEXR picture; its content counts, not its name.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Io`] if it cannot be read, [`Error::Input`] if it is none of these, damaged, or holds values that are
-    /// not finite.
-    pub fn read(path: &Path) -> Result<Photo> {
-        Photo::new(&crate::read::image(path)?).map_err(|why| Error::Input(format!("{}: {why}", path.display())))
-    }
-
     /// Takes over a decoded picture: transparent parts show white paper, light beyond 1 (OpenEXR) is clamped.
     ///
     /// # Errors

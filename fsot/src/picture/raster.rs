@@ -177,7 +177,7 @@ mod tests {
             let centre = [10.0 + k as f32 * 0.137, 9.0 + k as f32 * 0.271];
             for radius in [0.6, 1.3, 4.2] {
                 let mut drawing = Drawing::new([40.0, 40.0]);
-                drawing.dots([&centre[..]], 1.0, radius, super::super::BLACK);
+                drawing.dots([&centre[..]], radius, super::super::BLACK);
                 let area = std::f64::consts::PI * f64::from(radius).powi(2);
                 let drawn = darkness(&rasterise(&drawing, 1.0).unwrap());
                 assert!((drawn / area - 1.0).abs() < 0.02, "{centre:?} {radius}: {drawn} of {area}");
@@ -197,8 +197,8 @@ mod tests {
     #[test]
     fn inks_multiply_and_paint_hides() {
         let mut drawing = Drawing::new([2.0, 2.0]);
-        drawing.dots([&[1.0, 1.0][..]], 1.0, 5.0, [0, 255, 255]);
-        drawing.dots([&[1.0, 1.0][..]], 1.0, 5.0, [255, 0, 255]);
+        drawing.dots([&[1.0, 1.0][..]], 5.0, [0, 255, 255]);
+        drawing.dots([&[1.0, 1.0][..]], 5.0, [255, 0, 255]);
         assert_eq!(rasterise(&drawing, 1.0).unwrap().get_pixel(0, 0).0, [255, 0, 255]);
         drawing.blend = Blend::Multiply;
         assert_eq!(rasterise(&drawing, 1.0).unwrap().get_pixel(0, 0).0, [0, 0, 255]);
@@ -217,7 +217,7 @@ mod tests {
     #[test]
     fn shapes_outside_and_bands_below_are_no_trouble() {
         let mut drawing = Drawing::new([5.0, 100.0]);
-        drawing.dots([&[-9.0, -9.0][..], &[2.0, 32.0], &[2.0, 150.0], &[f32::NAN, 1.0]], 1.0, 1.0, [0; 3]);
+        drawing.dots([&[-9.0, -9.0][..], &[2.0, 32.0], &[2.0, 150.0], &[f32::NAN, 1.0]], 1.0, [0; 3]);
         let drawn = darkness(&rasterise(&drawing, 1.0).unwrap());
         assert!((drawn - std::f64::consts::PI).abs() < 0.05, "{drawn}");
         assert!(matches!(rasterise(&Drawing::new([1e9, 1e9]), 1.0), Err(Error::Input(_))));

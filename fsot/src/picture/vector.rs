@@ -57,7 +57,7 @@ mod tests {
     #[test]
     fn marks_of_a_colour_make_a_group() {
         let mut drawing = Drawing { blend: Blend::Multiply, ..Drawing::new([1.0, 0.5]) };
-        drawing.dots([&[0.25, 0.125][..], &[0.5, 0.5]], 1.0, 0.01, [0, 255, 255]);
+        drawing.dots([&[0.25, 0.125][..], &[0.5, 0.5]], 0.01, [0, 255, 255]);
         drawing.marks.push(Mark { shape: Shape::Polygon(vec![[0.0, 0.0], [1.0, 0.0], [0.0, 0.5]]), colour: [1, 2, 3] });
         let text = svg(&drawing, 100.0);
         assert_eq!(text.matches("<g ").count(), 2);

@@ -11,8 +11,8 @@ use crate::class::{Class, ClassCoordinates, ClassFunction, middle};
 use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::optimize::{Problem, Quality};
-use crate::points::{BELOW_ONE, Points};
-use crate::random::stream;
+use crate::points::Points;
+use crate::random::{shuffle, stream};
 use crate::target::image::{ImageTarget, spread};
 use crate::target::{Target, Uniform};
 use std::sync::Arc;
@@ -82,8 +82,7 @@ impl Placement {
         let initial = options.map.as_ref().map(|map| {
             let mut coordinates = spread(&[map], &[points], &mut stream(options.seed, u64::MAX - 1, 0));
             // The spread follows a curve: neighbours would otherwise be of one colour and size.
-            shuffle(&mut coordinates, options.seed);
-            coordinates.iter_mut().for_each(|x| *x = x.min(BELOW_ONE));
+            shuffle(coordinates.as_chunks_mut::<2>().0, &mut stream(options.seed, u64::MAX - 1, 1));
             Points::new(2, coordinates)
         });
         let problem = Problem {
@@ -134,13 +133,4 @@ fn classes(options: &Options, target: &Arc<dyn Target>) -> Vec<Class> {
         classes.push(class("large".into(), 1.0, ClassFunction::Ramp { rising: true }));
     }
     classes
-}
-
-/// Shuffles pairs of coordinates (Fisher and Yates).
-fn shuffle(coordinates: &mut [f32], seed: u64) {
-    let (points, _) = coordinates.as_chunks_mut::<2>();
-    let mut rng = stream(seed, u64::MAX - 1, 1);
-    for last in (1..points.len()).rev() {
-        points.swap(last, rng.below(last as u32 + 1) as usize);
-    }
 }

@@ -10,7 +10,7 @@ use super::table::SamplerTable;
 use super::visit::{Offsets, Prices, Rules, Surroundings, places, visit};
 use crate::error::Result;
 use crate::memory;
-use crate::random::stream;
+use crate::random::{shuffle, stream};
 use crate::run::Optimization;
 use rayon::prelude::*;
 
@@ -102,11 +102,6 @@ impl SamplerOptimizer {
         };
         optimizer.store();
         Ok(optimizer)
-    }
-
-    /// What is being optimised.
-    pub fn problem(&self) -> &SamplerProblem {
-        &self.problem
     }
 
     /// What there is now, of all octaves.
@@ -267,11 +262,8 @@ impl SamplerOptimizer {
     fn sweep(&mut self, sweep: usize, rules: (&Energy, &Groups, f32), fields: &mut Fields, all: &mut [Places]) {
         let (energy, groups, temperature) = rules;
         let number = self.iteration * SWEEPS as u64 + sweep as u64;
-        let mut rng = stream(self.problem.seed, number, ORDER_STREAM);
         let mut order: Vec<usize> = (0..APART * APART).collect();
-        for last in (1..order.len()).rev() {
-            order.swap(last, rng.below(last as u32 + 1) as usize);
-        }
+        shuffle(&mut order, &mut stream(self.problem.seed, number, ORDER_STREAM));
         let size = self.problem.size;
         // Changes that wait to be added around all pixels, and how many of them each pixel has.
         let mut changes: Vec<(usize, Errors)> = Vec::new();

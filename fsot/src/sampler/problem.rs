@@ -2,12 +2,13 @@
 
 use crate::error::{Result, check};
 use crate::optimize::Quality;
+use serde::Serialize;
 
 /// Octaves of samples that are looked at: the first 1, 2, 4, ... 64.
 pub const OCTAVES: usize = 7;
 
 /// An optimisation of a nested-net tile.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SamplerProblem {
     /// Pixels along each side: 32, 64 or 128.
     pub size: usize,
@@ -21,8 +22,6 @@ pub struct SamplerProblem {
     pub mean: f32,
     /// How much a marginal counts that is not uniform.
     pub border: f32,
-    /// A factor of all temperatures.
-    pub heat: f32,
     /// Arrangements that a visit of a pixel tries.
     pub candidates: usize,
     /// Steps: visits of every pixel [`SWEEPS`](super::optimizer::SWEEPS) times.
@@ -40,7 +39,6 @@ impl Default for SamplerProblem {
             exponent: 0.65,
             mean: 0.05,
             border: 0.3,
-            heat: 1.0,
             candidates: 256,
             iterations: iterations(Quality::Standard),
             seed: 1,
@@ -89,7 +87,6 @@ impl SamplerProblem {
         check((0.1..=1.5).contains(&self.exponent), "exponent", self.exponent, "0.1 to 1.5")?;
         check(amount(self.mean, 10.0), "mean", self.mean, "0 to 10")?;
         check(amount(self.border, 100.0), "border", self.border, "0 to 100")?;
-        check(amount(self.heat, 100.0), "heat", self.heat, "0 to 100")?;
         check((1..=1 << 20).contains(&self.candidates), "candidates", self.candidates, "1 to 1048576")?;
         check(self.iterations <= 1 << 40, "iterations", self.iterations, "at most 2^40")
     }
@@ -103,7 +100,7 @@ impl SamplerProblem {
                 let mut weights = self.weights;
                 weights[octaves..].fill(0.0);
                 let along = (part - begin) / (end - begin);
-                return (weights, (f64::from(self.heat) * hot * libm::pow(cold / hot, along)) as f32);
+                return (weights, (hot * libm::pow(cold / hot, along)) as f32);
             }
             begin = end;
         }

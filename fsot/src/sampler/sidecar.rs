@@ -3,12 +3,11 @@
 use super::optimizer::SamplerReport;
 use super::problem::SamplerProblem;
 use super::table::SamplerTable;
-use crate::checkpoint::digest;
+use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::export::sidecar;
 use crate::read;
 use serde::{Deserialize, Serialize};
-use std::io::ErrorKind;
 use std::path::Path;
 
 /// A sidecar.
@@ -87,21 +86,15 @@ impl SamplerSidecar {
 /// One of the two cannot be read, or is none, or describes another.
 pub fn read(path: &Path) -> Result<SamplerTable> {
     let beside = sidecar::path(path);
-    let text = read::text(&beside, "a sidecar").map_err(|error| match error {
-        Error::Io { path: missing, source } if source.kind() == ErrorKind::NotFound => {
-            let (table, missing) = (path.display(), missing.display());
-            Error::Input(format!("{table} needs its sidecar {missing}, which `fsot sampler` writes beside it"))
-        }
-        error => error,
+    let SamplerSidecar { size, bits, sha256, .. } = sidecar::read(path)?.ok_or_else(|| {
+        let (table, missing) = (path.display(), beside.display());
+        Error::Input(format!("{table} needs its sidecar {missing}, which `fsot sampler` writes beside it"))
     })?;
-    let sidecar: SamplerSidecar = toml::from_str(&text)
-        .map_err(|error| Error::Input(format!("{} is no sidecar of a sampler: {error}", beside.display())))?;
-    let SamplerSidecar { size, bits, .. } = sidecar;
     SamplerProblem { size, bits, ..SamplerProblem::default() }
         .validate()
         .map_err(|error| Error::Input(format!("{}: {error}", beside.display())))?;
     let bytes = read::bytes(path)?;
-    if digest(&bytes) != sidecar.sha256 {
+    if digest(&bytes) != sha256 {
         return Err(Error::Input(format!("{} describes another table: its sha256 differs", beside.display())));
     }
     SamplerTable::from_bytes(size, bits, &bytes)

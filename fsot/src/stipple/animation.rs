@@ -1,12 +1,12 @@
 //! Animated stippling: frames that share points (figure 5.13).
 
-use super::options::{Options, effort, inks, paper, radius};
+use super::options::{Options, effort, inks, paper, radius, spacing};
 use crate::class::{Class, ClassFunction, Step};
 use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::optimize::Problem;
-use crate::picture::{Drawing, Photo};
-use crate::points::{BELOW_ONE, Points};
+use crate::picture::{BLACK, Drawing, Photo, WHITE};
+use crate::points::Points;
 use crate::random::stream;
 use crate::target::image::{ImageTarget, spread};
 use std::ops::Range;
@@ -95,9 +95,7 @@ pub struct Animation {
     pub windows: Windows,
     /// The radius of each frame's dots, in units of the picture's longer side.
     pub radii: Vec<f32>,
-    extent: [f32; 2],
-    invert: bool,
-    linear: bool,
+    blank: Drawing,
 }
 
 impl Animation {
@@ -153,14 +151,7 @@ impl Animation {
             initial: Some(initial),
             ..Problem::new(points, 2)
         };
-        Ok(Animation {
-            problem,
-            windows,
-            radii,
-            extent: first.extent(),
-            invert: options.invert,
-            linear: options.tone == super::Tone::Linear,
-        })
+        Ok(Animation { problem, windows, radii, blank: paper(first.extent(), options) })
     }
 
     /// The points of a frame, in units of the picture's longer side.
@@ -176,18 +167,18 @@ impl Animation {
     }
 
     fn draw(&self, points: &Points, ranges: &[Range<usize>; 2], radius: f32) -> Drawing {
-        let mut drawing = paper(self.extent, self.invert, self.linear);
-        let colour = if self.invert { crate::picture::WHITE } else { crate::picture::BLACK };
+        let mut drawing = self.blank.clone();
+        let colour = if drawing.paper == BLACK { WHITE } else { BLACK };
         let all: Vec<&[f32]> = points.iter().collect();
         for range in ranges {
-            drawing.dots(all.get(range.clone()).unwrap_or_default().iter().copied(), 1.0, radius, colour);
+            drawing.dots(all.get(range.clone()).unwrap_or_default().iter().copied(), radius, colour);
         }
         drawing
     }
 
     /// The mean distance between the dots of a frame, in units of the picture's longer side.
     pub fn spacing(&self) -> f32 {
-        (self.extent[0] * self.extent[1] / self.windows.window as f32).sqrt()
+        spacing(&self.blank, self.windows.window)
     }
 }
 
@@ -217,7 +208,6 @@ fn starting(targets: &[Arc<ImageTarget>], windows: Windows, seed: u64) -> Points
         let mut rng = stream(seed, super::STARTING, frame as u64);
         coordinates.extend(spread(&[target], &[new], &mut rng));
     }
-    coordinates.iter_mut().for_each(|x: &mut f32| *x = x.min(BELOW_ONE));
     Points::new(2, coordinates)
 }
 

@@ -13,10 +13,10 @@ use crate::error::{Error, Result};
 use crate::export::points::Labels;
 use crate::optimize::{Domain, Problem};
 use crate::picture::{Drawing, Photo};
-use crate::points::{BELOW_ONE, Points};
+use crate::points::Points;
 use crate::random::stream;
 use crate::target::image::{ImageTarget, spread};
-use options::{effort, inks, paper, radius};
+use options::{effort, inks, paper, radius, spacing};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -41,9 +41,7 @@ pub struct Stipple {
     /// The radius of every dot, in units of the picture's longer side: all dots together have the area that the inks
     /// need.
     pub radius: f32,
-    extent: [f32; 2],
-    invert: bool,
-    linear: bool,
+    blank: Drawing,
 }
 
 impl Stipple {
@@ -69,7 +67,6 @@ impl Stipple {
             // All inks at the resolution of the whole set: their densities are to be mixed.
             targets.push(ImageTarget::new(photo.width, photo.height, &ink.density, options.points)?);
         }
-        let extent = photo.extent();
         let initial = starting(&targets, &dots, options.seed);
         let problem = Problem {
             classes: classes(targets, &dots)?,
@@ -81,24 +78,17 @@ impl Stipple {
             ..Problem::new(options.points, 2)
         };
         let ink_area = energies.iter().sum::<f64>() / photo.pixels.len() as f64;
-        let radius = radius(ink_area, extent, options.points);
-        Ok(Stipple {
-            problem,
-            inks: dots,
-            radius,
-            extent,
-            invert: options.invert,
-            linear: options.tone == Tone::Linear,
-        })
+        let radius = radius(ink_area, photo.extent(), options.points);
+        Ok(Stipple { problem, inks: dots, radius, blank: paper(photo.extent(), options) })
     }
 
     /// The points as dots of their inks, in units of the picture's longer side.
     pub fn drawing(&self, points: &Points) -> Drawing {
-        let mut drawing = paper(self.extent, self.invert, self.linear);
+        let mut drawing = self.blank.clone();
         let points: Vec<&[f32]> = points.iter().collect();
         for dots in &self.inks {
             let own = points.get(dots.range.clone()).unwrap_or_default();
-            drawing.dots(own.iter().copied(), 1.0, self.radius, dots.colour);
+            drawing.dots(own.iter().copied(), self.radius, dots.colour);
         }
         drawing
     }
@@ -112,7 +102,7 @@ impl Stipple {
     /// The mean distance between dots, in units of the picture's longer side: the side of a square of the area that
     /// there is for each.
     pub fn spacing(&self) -> f32 {
-        (self.extent[0] * self.extent[1] / self.problem.points as f32).sqrt()
+        spacing(&self.blank, self.problem.points)
     }
 }
 
@@ -145,9 +135,7 @@ const STARTING: u64 = u64::MAX - 1;
 fn starting(targets: &[ImageTarget], dots: &[Dots], seed: u64) -> Points {
     let targets: Vec<&ImageTarget> = targets.iter().collect();
     let counts: Vec<usize> = dots.iter().map(|dots| dots.range.len()).collect();
-    let mut coordinates = spread(&targets, &counts, &mut stream(seed, STARTING, 0));
-    coordinates.iter_mut().for_each(|x| *x = x.min(BELOW_ONE));
-    Points::new(2, coordinates)
+    Points::new(2, spread(&targets, &counts, &mut stream(seed, STARTING, 0)))
 }
 
 /// A class for every subset of the inks.

@@ -49,13 +49,19 @@ impl Options {
     }
 }
 
-pub(super) fn paper(extent: [f32; 2], invert: bool, linear: bool) -> Drawing {
+/// The drawing without dots.
+pub(super) fn paper(extent: [f32; 2], options: &Options) -> Drawing {
     Drawing {
-        paper: if invert { BLACK } else { WHITE },
-        blend: if invert { Blend::Over } else { Blend::Multiply },
-        linear,
+        paper: if options.invert { BLACK } else { WHITE },
+        blend: if options.invert { Blend::Over } else { Blend::Multiply },
+        linear: options.tone == Tone::Linear,
         ..Drawing::new(extent)
     }
+}
+
+/// The mean distance between dots: the side of a square of the area that there is for each.
+pub(super) fn spacing(blank: &Drawing, dots: usize) -> f32 {
+    (blank.size[0] * blank.size[1] / dots as f32).sqrt()
 }
 
 /// The radius of dots that together have `ink_area` of the paper.

@@ -3,14 +3,16 @@
 use crate::picture::{Photo, decode, luminance};
 
 /// What "half as dark" means.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 pub enum Tone {
-    /// Of sRGB-encoded values, which are about even in lightness: middle grey is half covered. The mean of the
-    /// drawing's pixel values is the picture's.
+    /// Of sRGB-encoded values: even steps of lightness.
+    ///
+    /// Middle grey is half covered: the mean of the drawing's pixel values is the picture's.
     #[default]
     Encoded,
-    /// Of linear light: middle grey reflects 21 % and is 79 % covered. What is seen from where dots merge is the
-    /// picture.
+    /// Of linear light: right where dots are too small to be told apart.
+    ///
+    /// Middle grey reflects 21 % and is 79 % covered.
     Linear,
 }
 

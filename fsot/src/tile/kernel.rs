@@ -2,6 +2,7 @@
 
 use crate::class::MIN_SIGMA;
 use crate::{Error, error::Result};
+use serde::Serialize;
 use std::fmt;
 use std::str::FromStr;
 
@@ -40,7 +41,7 @@ pub struct Tap {
 
 /// The spatial class function of every pixel, relative to its centre. The samples of a pixel count as being at its
 /// centre.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Kernel {
     /// A pixel's own samples only: what box reconstruction integrates.
     Box,

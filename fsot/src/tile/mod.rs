@@ -9,7 +9,7 @@ mod directions;
 mod kernel;
 mod optimizer;
 mod order;
-pub mod presets;
+mod presets;
 mod problem;
 mod projection;
 mod rank;
@@ -19,6 +19,7 @@ mod temporal;
 
 pub use kernel::{Kernel, PERCEPTUAL_SIGMA, RECONSTRUCTION_SIGMA, Tap};
 pub use optimizer::TileOptimizer;
+pub use presets::preset;
 pub use problem::{ClassShare, Projections, Steps, TileProblem, iterations};
 pub use samples::TileSamples;
 pub use temporal::{FRAME_RATE, TemporalKernel};

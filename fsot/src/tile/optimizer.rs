@@ -8,7 +8,6 @@ use super::samples::TileSamples;
 use super::stencil::{Lattice, Stencils, WEIGHT_UNIT};
 use crate::error::Result;
 use crate::memory;
-use crate::optimize::Domain;
 use crate::points::BELOW_ONE;
 use crate::random::stream;
 use crate::run::Optimization;
@@ -85,24 +84,11 @@ impl TileOptimizer {
         })
     }
 
-    /// What is being optimised.
-    pub fn problem(&self) -> &TileProblem {
-        &self.problem
-    }
-
     /// The samples as they are now; unless they are progressive, those of each pixel [ordered](TileSamples::ordered).
     pub fn samples(&self) -> TileSamples {
         let TileProblem { size, spp, dims, frames, .. } = self.problem;
         let samples = TileSamples { size, spp, dims, frames, coordinates: self.coordinates.clone() };
         if self.problem.progressive { samples } else { samples.ordered() }
-    }
-
-    /// Takes all steps that remain.
-    pub fn run(mut self) -> TileSamples {
-        while self.iteration < self.problem.iterations {
-            self.step();
-        }
-        self.samples()
     }
 
     /// The bins of every direction and length.
@@ -127,8 +113,8 @@ impl TileOptimizer {
     }
 
     /// The positions of all samples, margins included, on every direction.
-    fn project(&mut self, projections: &[Projection], shift: &[f32]) {
-        let TileProblem { spp, dims, domain, .. } = self.problem;
+    fn project(&mut self, projections: &[Projection]) {
+        let TileProblem { spp, dims, .. } = self.problem;
         let lattice = self.stencils.lattice;
         let coordinates = &self.coordinates;
         for (positions, projection) in self.positions.chunks_exact_mut(lattice.samples()).zip(projections) {
@@ -142,16 +128,7 @@ impl TileOptimizer {
                     let source = (from * lattice.size + lattice.column(x)) * spp * dims;
                     let samples = coordinates[source..source + spp * dims].chunks_exact(dims);
                     for (position, sample) in pixel.iter_mut().zip(samples) {
-                        let dot: f32 = match domain {
-                            Domain::Bounded => sample.iter().zip(&projection.direction).map(|(x, d)| x * d).sum(),
-                            Domain::Toroidal => {
-                                let moved = sample
-                                    .iter()
-                                    .zip(shift)
-                                    .map(|(x, s)| if x + s < 1.0 { x + s } else { x + s - 1.0 });
-                                moved.zip(&projection.direction).map(|(x, d)| x * d).sum()
-                            }
-                        };
+                        let dot: f32 = sample.iter().zip(&projection.direction).map(|(x, d)| x * d).sum();
                         *position = ((dot + offset) * scale).clamp(0.0, (POSITIONS - 1.0) as f32) as u32;
                     }
                 }
@@ -205,7 +182,7 @@ impl TileOptimizer {
 
     /// Moves every sample by the weighted mean of its displacements, times the step size.
     fn apply(&mut self, projections: &[Projection], sums: &[Vec<i64>]) {
-        let TileProblem { size, spp, dims, domain, directions, .. } = self.problem;
+        let TileProblem { size, spp, dims, directions, .. } = self.problem;
         let lattice = self.stencils.lattice;
         let step = self.problem.step_size(self.iteration) / POSITIONS;
         let stride = directions + 1;
@@ -234,7 +211,6 @@ impl TileOptimizer {
                     let offset: f64 =
                         along.map(|(p, &sum)| f64::from(p.direction[dim]) * (p.length * sum as f64)).sum();
                     let moved = f64::from(*coordinate) + scale * offset;
-                    let moved = if domain == Domain::Toroidal { moved - libm::floor(moved) } else { moved };
                     *coordinate = (moved as f32).clamp(0.0, BELOW_ONE);
                 }
             }
@@ -255,9 +231,8 @@ impl Optimization for TileOptimizer {
         let mut rng = stream(self.problem.seed, self.iteration, STEP_STREAM);
         let projections: Vec<Projection> =
             directions::draw(&self.problem, &mut rng).into_iter().map(Projection::new).collect();
-        let shift: Vec<f32> = (0..self.problem.dims).map(|_| rng.uniform_f32()).collect();
         self.cut(&projections);
-        self.project(&projections, &shift);
+        self.project(&projections);
 
         let lattice = self.stencils.lattice;
         let (all_rows, stride) = (lattice.frames * lattice.size, self.problem.directions + 1);

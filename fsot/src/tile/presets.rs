@@ -1,44 +1,27 @@
-//! The tiles that come with noisefloor: their names and everything they are made from.
+//! The tiles that come with noisefloor: everything they are made from.
 
 use super::kernel::{Kernel, RECONSTRUCTION_SIGMA};
 use super::problem::{ClassShare, Projections, TileProblem};
 use super::temporal::TemporalKernel;
+use noisefloor::tile::Builtin;
 
-/// The names of all shipped tiles: `<size>_<spp>SPP_<dims>D[_VARIANT]`.
-pub const NAMES: [&str; 12] = [
-    "128_1SPP_2D",
-    "128_4SPP_2D",
-    "128_16SPP_2D",
-    "128_16SPP_2D_PROGRESSIVE",
-    "128_1SPP_4D",
-    "128_4SPP_4D",
-    "128_1SPP_2D_GAUSSIAN",
-    "128_4SPP_2D_GAUSSIAN",
-    "128_1SPP_2D_TEMPORAL",
-    "64_1SPP_2D",
-    "64_4SPP_2D",
-    "64_4SPP_2D_TEMPORAL",
-];
-
-/// What a shipped tile is made from; None if no tile has this name.
-pub fn preset(name: &str) -> Option<TileProblem> {
-    let problem = match name {
-        "128_1SPP_2D" => plane(128, 1, 2048),
-        "128_4SPP_2D" => plane(128, 4, 8192),
-        "128_16SPP_2D" => plane(128, 16, 2048),
-        "128_16SPP_2D_PROGRESSIVE" => progressive(plane(128, 16, 4096)),
-        "128_1SPP_4D" => space(128, 1, 0.4),
-        "128_4SPP_4D" => space(128, 4, 0.12),
-        "128_1SPP_2D_GAUSSIAN" => gaussian(plane(128, 1, 2048), 0.0),
-        "128_4SPP_2D_GAUSSIAN" => gaussian(plane(128, 4, 4096), 0.3),
-        "128_1SPP_2D_TEMPORAL" => temporal(plane(128, 1, 1024), 0.5, ClassShare { share: 0.1, weight: 1.0 }),
-        "64_1SPP_2D" => plane(64, 1, 2048),
-        "64_4SPP_2D" => plane(64, 4, 8192),
+/// What a shipped tile is made from.
+pub fn preset(tile: Builtin) -> TileProblem {
+    match tile {
+        Builtin::Size128Spp1Dims2 => plane(128, 1, 2048),
+        Builtin::Size128Spp4Dims2 => plane(128, 4, 8192),
+        Builtin::Size128Spp16Dims2 => plane(128, 16, 2048),
+        Builtin::Size128Spp16Dims2Progressive => progressive(plane(128, 16, 4096)),
+        Builtin::Size128Spp1Dims4 => space(128, 1, 0.4),
+        Builtin::Size128Spp4Dims4 => space(128, 4, 0.12),
+        Builtin::Size128Spp1Dims2Gaussian => gaussian(plane(128, 1, 2048), 0.0),
+        Builtin::Size128Spp4Dims2Gaussian => gaussian(plane(128, 4, 4096), 0.3),
+        Builtin::Size128Spp1Dims2Temporal => temporal(plane(128, 1, 1024), 0.5, ClassShare { share: 0.1, weight: 1.0 }),
+        Builtin::Size64Spp1Dims2 => plane(64, 1, 2048),
+        Builtin::Size64Spp4Dims2 => plane(64, 4, 8192),
         // The pixel's own integral counts more over frames, as it does within them from a few samples on.
-        "64_4SPP_2D_TEMPORAL" => temporal(plane(64, 4, 2048), 0.65, ClassShare { share: 0.15, weight: 2.5 }),
-        _ => return None,
-    };
-    Some(problem)
+        Builtin::Size64Spp4Dims2Temporal => temporal(plane(64, 4, 2048), 0.65, ClassShare { share: 0.15, weight: 2.5 }),
+    }
 }
 
 /// Two dimensions.

@@ -3,8 +3,9 @@
 use super::kernel::Kernel;
 use super::temporal::TemporalKernel;
 use crate::error::{Error, Result, check};
-use crate::optimize::{Domain, Quality};
+use crate::optimize::Quality;
 use noisefloor::tile::{MAX_DIMS, MAX_FRAMES, MAX_SIZE, MAX_SPP};
+use serde::Serialize;
 
 /// The most coordinates in all.
 const MAX_COORDINATES: usize = 1 << 28;
@@ -14,7 +15,7 @@ const MAX_ITERATIONS: u64 = 1 << 24;
 const MAX_DIRECTIONS: usize = 16;
 
 /// A tile to be optimised. [`TileProblem::new`] gives one whose parameters were tuned; any may be changed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TileProblem {
     /// Pixels along each side: a power of two from 8 to 1024, more than twice the kernel's radius.
     pub size: usize,
@@ -30,9 +31,6 @@ pub struct TileProblem {
     pub temporal: Option<TemporalKernel>,
     /// Whether the first 1, 2, 4, ... samples of all pixels are tiles too.
     pub progressive: bool,
-    /// The classes of the prefixes of a progressive tile: of 1, 2, 4, ..., `spp` samples. Of the shares only the ratios
-    /// matter. Empty: the documented default.
-    pub prefixes: Vec<ClassShare>,
     /// The class of what the renderer reconstructs a pixel from, beside the perceptual one: it lowers the error that is
     /// there before any perception, such as that of single pixels. In an animation with a temporal kernel, over time.
     pub box_class: ClassShare,
@@ -56,12 +54,10 @@ pub struct TileProblem {
     /// The threshold of a slice is z = u^e with u uniform on [0, 1): above 1 prefers wide subclasses. For a Gaussian
     /// kernel it is the same as a standard deviation sqrt(e) times as large. 0.25 to 4.
     pub threshold_exponent: f32,
-    /// The domain of the samples. Every step looks at a torus from another random shift.
-    pub domain: Domain,
 }
 
 /// What a class counts beside the others.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ClassShare {
     /// The share of the slices: 0 to 1.
     pub share: f32,
@@ -72,7 +68,7 @@ pub struct ClassShare {
 }
 
 /// What a slice is projected on.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Projections {
     /// The probability of an axis.
     pub axis: f32,
@@ -82,7 +78,7 @@ pub struct Projections {
 
 /// The step size: `first`, then from `hold` (as a part of all iterations) falling linearly to `last`. 1 moves a sample
 /// by the mean of the displacements that its slices ask for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Steps {
     /// The step size at first: above 0, at most 16.
     pub first: f32,
@@ -113,7 +109,6 @@ impl TileProblem {
             kernel: Kernel::Perceptual,
             temporal: None,
             progressive: false,
-            prefixes: Vec::new(),
             box_class: ClassShare { share: if spp > 1 { 0.1 } else { 0.0 }, weight: 1.0 },
             reconstruction: Kernel::Box,
             frame_share: 0.5,
@@ -124,7 +119,6 @@ impl TileProblem {
             steps: Steps { first: 4.0, last: 0.05, hold: 0.3 },
             offset_correction: if spp > 1 && dims <= 2 { 0.5 } else { 0.0 },
             threshold_exponent: if spp > 1 { 1.4 } else { 1.2 },
-            domain: Domain::Bounded,
         }
     }
 
@@ -154,7 +148,7 @@ impl TileProblem {
         check((1..=MAX_DIRECTIONS).contains(&self.directions), "directions", self.directions, "1 to 16 per step")?;
         let ClassShare { share, weight } = self.box_class;
         check((0.0..=1.0).contains(&share), "the box class's share", share, "0 to 1")?;
-        check_weight("the box class's weight", weight)?;
+        check(weight > 0.0 && weight <= 1024.0, "the box class's weight", weight, "above 0 and at most 1024")?;
         check((0.0..=1.0).contains(&self.frame_share), "the frame share", self.frame_share, "0 to 1")?;
         check(
             self.temporal.is_none() || share + self.frame_share <= 1.0,
@@ -186,29 +180,10 @@ impl TileProblem {
             self.threshold_exponent,
             "0.25 to 4",
         )?;
-        self.check_prefixes()?;
         if self.temporal.is_some() && self.frames < 2 {
             return Err(Error::input("a temporal kernel is for an animation: ask for at least 2 frames"));
         }
         Ok(())
-    }
-
-    fn check_prefixes(&self) -> Result<()> {
-        if !self.progressive || self.prefixes.is_empty() {
-            return Ok(());
-        }
-        let (levels, given) = (self.spp.trailing_zeros() as usize + 1, self.prefixes.len());
-        check(given == levels, "the number of prefixes", given, "one for each of 1, 2, 4, ..., spp samples")?;
-        for ClassShare { share, weight } in &self.prefixes {
-            check((0.0..=1e6).contains(share), "a prefix's share", share, "0 to 1e6")?;
-            check_weight("a prefix's weight", *weight)?;
-        }
-        check(
-            self.prefixes.iter().any(|prefix| prefix.share > 0.0),
-            "every prefix's share",
-            0,
-            "a positive one at least",
-        )
     }
 
     /// The step size of an iteration.
@@ -218,9 +193,4 @@ impl TileProblem {
         let falling = ((done - f64::from(hold)) / (1.0 - f64::from(hold)).max(1e-9)).clamp(0.0, 1.0);
         f64::from(first) + falling * (f64::from(last) - f64::from(first))
     }
-}
-
-/// An [`Error::Input`] unless it can be a class's weight.
-fn check_weight(what: &str, weight: f32) -> Result<()> {
-    check(weight > 0.0 && weight <= 1024.0, what, weight, "above 0 and at most 1024")
 }

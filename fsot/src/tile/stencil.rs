@@ -28,7 +28,7 @@ const PREFIXES: [(f64, f32); 9] =
 
 /// A subclass, the same at every pixel: the first `prefix` samples of the first `taps` pixels of a class.
 #[derive(Clone, Debug)]
-pub(super) struct Entry {
+struct Entry {
     /// Which class: an index for [`Lattice`].
     class: usize,
     /// The pixels, in decreasing order of the class function.
@@ -36,14 +36,14 @@ pub(super) struct Entry {
     /// The samples of each.
     prefix: usize,
     /// How often a slice selects it.
-    pub(super) probability: f64,
+    probability: f64,
     /// What its displacements count.
     weight: f32,
 }
 
 impl Entry {
     /// The number of samples.
-    pub(super) fn length(&self) -> usize {
+    fn length(&self) -> usize {
         self.taps * self.prefix
     }
 }
@@ -56,14 +56,6 @@ struct Class {
 }
 
 impl TileProblem {
-    /// The samples that all slices of a step look at, in the mean: a step's time is in proportion to it. An
-    /// [`Error::Input`] as for [`validate`](Self::validate).
-    pub fn cost(&self) -> Result<f64> {
-        self.validate()?;
-        let slices = (self.frames * self.size * self.size) as f64;
-        Ok(slices * enumerate(self)?.iter().map(|entry| entry.probability * entry.length() as f64).sum::<f64>())
-    }
-
     /// An [`Error::Input`] that names the first value that cannot be.
     pub fn validate(&self) -> Result<()> {
         self.stencils().map(|_| ())
@@ -74,12 +66,6 @@ impl TileProblem {
         self.check_ranges()?;
         Stencils::new(self)
     }
-}
-
-/// All subclasses of a problem, with their probabilities, which add up to 1.
-fn enumerate(problem: &TileProblem) -> Result<Vec<Entry>> {
-    let classes = classes(problem)?;
-    Ok(entries(problem, &classes))
 }
 
 fn classes(problem: &TileProblem) -> Result<Vec<Class>> {
@@ -129,6 +115,7 @@ fn sorted(mut taps: Vec<Tap>) -> Vec<Tap> {
     taps
 }
 
+/// All subclasses of a problem, with their probabilities, which add up to 1.
 fn entries(problem: &TileProblem, classes: &[Class]) -> Vec<Entry> {
     let prefixes = prefixes(problem);
     let mut entries = Vec::new();
@@ -153,10 +140,7 @@ fn prefixes(problem: &TileProblem) -> Vec<(usize, f64, f32)> {
         return vec![(problem.spp, 1.0, 1.0)];
     }
     let levels = problem.spp.trailing_zeros() as usize;
-    let class = |level: usize| match problem.prefixes.get(level) {
-        Some(class) => (f64::from(class.share), class.weight),
-        None => PREFIXES[levels - level],
-    };
+    let class = |level: usize| PREFIXES[levels - level];
     let total: f64 = (0..=levels).map(|level| class(level).0).sum();
     (0..=levels).map(|level| (1 << level, class(level).0 / total, class(level).1)).collect()
 }
@@ -388,7 +372,8 @@ mod tests {
             problem.progressive = progressive;
             problem.frames = frames;
             problem.temporal = (frames > 1).then_some(TemporalKernel::Ema(0.5));
-            let sum: f64 = enumerate(&problem).unwrap().iter().map(|entry| entry.probability).sum();
+            let all = entries(&problem, &classes(&problem).unwrap());
+            let sum: f64 = all.iter().map(|entry| entry.probability).sum();
             prop_assert!((sum - 1.0).abs() < 1e-6);
             let stencils = problem.stencils().unwrap();
             let lattice = stencils.lattice;

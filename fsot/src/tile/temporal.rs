@@ -1,7 +1,8 @@
-//! What an animation is filtered by along time (5.8).
+//! What an animation is filtered by along time (section 5.8).
 
 use crate::counted::counted;
 use crate::{Error, error::Result};
+use serde::Serialize;
 use std::fmt;
 use std::str::FromStr;
 
@@ -16,7 +17,7 @@ const CUT: f32 = 0.05;
 
 /// The temporal class function of a frame: the weights of that frame and of those before it, those up to a twentieth of
 /// the largest left out. Time wraps around like the image, so that the animation loops.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum TemporalKernel {
     /// The exponential moving average of temporal anti-aliasing, `a (1 - a)^k` for the frame k frames ago, cut
     /// at the animation's length: a from 1e-6 to 1.

@@ -74,13 +74,13 @@ fn thread_count(text: &str) -> std::result::Result<usize, String> {
 
 impl Threads {
     /// Runs `work` with rayon's work done by that many threads.
-    pub(crate) fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> Result<R> {
+    pub(crate) fn install<R: Send>(&self, work: impl FnOnce() -> Result<R> + Send) -> Result<R> {
         let mut builder = rayon::ThreadPoolBuilder::new();
         if let Some(count) = self.threads {
             builder = builder.num_threads(count);
         }
         let pool = builder.build().map_err(|error| Error::Input(format!("cannot start the threads: {error}")))?;
-        Ok(pool.install(work))
+        pool.install(work)
     }
 }
 

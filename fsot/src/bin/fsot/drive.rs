@@ -220,7 +220,7 @@ impl Progress {
     fn announce(&mut self, done: u64, all: u64, steps: u64) {
         self.announced = true;
         let threads = rayon::current_num_threads();
-        let total = self.start.elapsed() + self.left(done, all, steps);
+        let total = self.start.elapsed().saturating_add(self.left(done, all, steps));
         let duration = if total.as_secs() < 2 {
             format!("{:.1} seconds", total.as_secs_f64())
         } else {

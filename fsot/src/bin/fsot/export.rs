@@ -2,6 +2,7 @@
 
 use crate::names;
 use clap::ValueEnum;
+use clap::builder::PossibleValue;
 use fsot::error::{Error, Result};
 use fsot::export::nft::TileFile;
 use fsot::export::tile;
@@ -39,21 +40,9 @@ enum Format {
     Rust,
 }
 
-impl Format {
-    fn name(self) -> &'static str {
-        match self {
-            Format::Png => "png",
-            Format::Exr => "exr",
-            Format::Raw => "raw",
-            Format::CHeader => "c-header",
-            Format::Rust => "rust",
-        }
-    }
-}
-
 /// Reads the tile and writes it anew.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    names::export(&args.out, args.format.name())?;
+    names::export(&args.out, args.format.to_possible_value().as_ref().map_or("", PossibleValue::get_name))?;
     output::check([args.out.as_path()], [args.tile.as_path()])?;
     let file = TileFile::read(&args.tile)?;
     let view = file.view();
@@ -69,8 +58,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         Format::Png => tile::png(&view)?,
         Format::Exr => tile::exr(&view)?,
         Format::Raw => view.payload().to_vec(),
-        Format::CHeader => tile::c_header(&view, &name)?,
-        Format::Rust => tile::rust(&view, &name)?,
+        Format::CHeader => tile::c_header(&view, &name),
+        Format::Rust => tile::rust(&view, &name),
     };
     output::write(&args.out, &bytes)
 }

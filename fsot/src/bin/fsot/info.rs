@@ -2,13 +2,13 @@
 
 use crate::common::Report;
 use crate::say::say;
-use fsot::checkpoint::digest;
 use fsot::counted::counted;
+use fsot::digest::digest;
 use fsot::error::Result;
 use fsot::export::nft::TileFile;
 use fsot::export::sidecar::{self, Row, Sidecar};
-use fsot::tile::{TileProblem, presets};
-use noisefloor::tile::Shape;
+use fsot::tile::{TileProblem, preset};
+use noisefloor::tile::{Builtin, Shape};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -31,9 +31,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 
 fn list() -> Result<(String, Value)> {
     let mut text = String::new();
-    for name in presets::NAMES {
-        let Some(problem) = presets::preset(name) else { continue };
-        let TileProblem { size, spp, dims, frames, iterations, .. } = &problem;
+    let tiles = Builtin::ALL.map(|tile| (tile.name(), preset(tile)));
+    for (name, problem) in &tiles {
+        let TileProblem { size, spp, dims, frames, iterations, .. } = problem;
         let frames = if *frames > 1 { format!(", {frames} frames") } else { String::new() };
         let kernels = problem.kernels();
         let progressive = if problem.progressive { ", progressive" } else { "" };
@@ -45,13 +45,13 @@ fn list() -> Result<(String, Value)> {
         )
         .unwrap_or(());
     }
-    Ok((text, json!({ "presets": presets::NAMES })))
+    Ok((text, json!({ "presets": tiles.map(|(name, _)| name) })))
 }
 
 fn tell(tile: &Path) -> Result<(String, Value)> {
     let path = tile.display();
     let file = TileFile::read(tile)?;
-    let mut sidecar = Sidecar::read(tile)?;
+    let mut sidecar: Option<Sidecar> = sidecar::read(tile)?;
     if sidecar.as_ref().is_some_and(|sidecar| !sidecar.describes(file.bytes())) {
         say(&format!("warning: {} describes another tile: its sha256 differs", sidecar::path(tile).display()))?;
         sidecar = None;

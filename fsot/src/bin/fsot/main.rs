@@ -65,11 +65,11 @@ fn main() -> ExitCode {
         Err(answer) => return print(&answer),
     };
     let result = match arguments.command {
-        Command::Points(args) => points::run(&args),
-        Command::Place(args) => place::run(&args),
-        Command::Stipple(args) => stipple::run(&args),
-        Command::Tile(args) => tile::run(&args),
-        Command::Sampler(args) => sampler::run(&args),
+        Command::Points(args) => args.common.threads.install(|| points::run(&args)),
+        Command::Place(args) => args.common.threads.install(|| place::run(&args)),
+        Command::Stipple(args) => args.common.threads.install(|| stipple::run(&args)),
+        Command::Tile(args) => args.common.threads.install(|| tile::run(&args)),
+        Command::Sampler(args) => args.common.threads.install(|| sampler::run(&args)),
         Command::Measure(args) => measure::run(&args),
         Command::Spectrum(args) => spectrum::run(&args),
         Command::Export(args) => export::run(&args),

@@ -7,11 +7,13 @@ use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::export::nft::TileFile;
 use fsot::export::points::Table;
+use fsot::metrics::figure::{self, Sheet};
 use fsot::metrics::text::PrefixTable;
-use fsot::metrics::{self, TileOptions, TileView, figure};
+use fsot::metrics::{self, TileOptions, TileView};
 use fsot::output;
 use fsot::points::Points;
 use fsot::read;
+use fsot::tile::TileSamples;
 use noisefloor::tile::Shape;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -19,6 +21,8 @@ use std::path::{Path, PathBuf};
 
 /// The most classes of a file that are measured, the first ones.
 const CLASSES: usize = 256;
+/// Numbers of points per doubling that --prefix prints.
+const PER_OCTAVE: usize = 4;
 
 /// What `fsot measure` is asked for.
 #[derive(clap::Args, Debug)]
@@ -35,10 +39,6 @@ pub(crate) struct Args {
     /// With --prefix: draw the errors, as SVG if the name ends so, else as PNG
     #[arg(long, value_name = "FILE", requires = "prefix")]
     plot: Option<PathBuf>,
-    /// Numbers of points per doubling that --prefix prints
-    #[arg(long, value_name = "COUNT", default_value_t = 4, requires = "prefix")]
-    #[arg(value_parser = clap::value_parser!(u8).range(1..=64))]
-    per_octave: u8,
     /// Random integrands of each family, of --prefix and of tiles [default: 512]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=65536))]
     integrands: Option<u32>,
@@ -72,23 +72,7 @@ pub(crate) enum Content {
     /// Points and their classes.
     Points(Table),
     /// The samples of a tile.
-    Tile(Samples),
-}
-
-/// The samples of a tile, laid out [frame][y][x][sample][dim].
-pub(crate) struct Samples {
-    size: usize,
-    spp: usize,
-    dims: usize,
-    frames: usize,
-    coordinates: Vec<f32>,
-}
-
-impl Samples {
-    /// For the metrics.
-    pub(crate) fn view(&self) -> Result<TileView<'_>> {
-        TileView::new(self.size, self.spp, self.dims, self.frames, &self.coordinates)
-    }
+    Tile(TileSamples),
 }
 
 impl Tile {
@@ -106,7 +90,7 @@ impl Tile {
             let file = TileFile::read(path)?;
             let Shape { size, spp, dims, frames, .. } = file.header().shape();
             let [size, spp, dims, frames] = [size, spp, dims, frames].map(|length| length as usize);
-            return Ok(Content::Tile(Samples { size, spp, dims, frames, coordinates: file.coordinates() }));
+            return Ok(Content::Tile(TileSamples { size, spp, dims, frames, coordinates: file.coordinates() }));
         }
         let table = read::points(path)?;
         metrics::check(&table.points).map_err(in_file(path))?;
@@ -120,7 +104,7 @@ impl Tile {
                 counted(self.spp, "sample")
             )));
         }
-        Ok(Content::Tile(Samples {
+        Ok(Content::Tile(TileSamples {
             size,
             spp: self.spp,
             dims: table.points.dims(),
@@ -152,6 +136,12 @@ pub(crate) fn title(files: &[PathBuf]) -> String {
     }
 }
 
+/// Writes a picture: as SVG if its name ends so, else as PNG.
+pub(crate) fn draw(path: &Path, sheet: &Sheet) -> Result<()> {
+    let bytes = if read::ending(path) == "svg" { sheet.svg()?.into_bytes() } else { sheet.png()? };
+    output::write(path, &bytes)
+}
+
 /// That an option, which is for `what`, has no effect.
 pub(crate) fn idle(option: &str, what: &str) -> Error {
     Error::Input(format!("{option} is for {what}, and there is none: leave it out"))
@@ -168,7 +158,7 @@ pub(crate) fn in_file(path: &Path) -> impl Fn(Error) -> Error + '_ {
 /// Reads every file before it measures the first, so that a wrong name costs no time.
 pub(crate) fn run(args: &Args) -> Result<()> {
     if let Some(folder) = &args.scenes {
-        let (text, json) = args.threads.install(|| scenes::run(folder, &args.files))??;
+        let (text, json) = args.threads.install(|| scenes::run(folder, &args.files))?;
         return args.report.print([], &text, &json);
     }
     args.plot.iter().try_for_each(|path| names::picture(path, &["png", "svg"]))?;
@@ -179,7 +169,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     if !args.ema.is_empty() && tiles == 0 {
         return Err(idle("--ema", "tiles"));
     }
-    let moves = |content: &Content| matches!(content, Content::Tile(Samples { frames: 2.., .. }));
+    let moves = |content: &Content| matches!(content, Content::Tile(TileSamples { frames: 2.., .. }));
     if !args.ema.is_empty() && !contents.iter().any(moves) {
         args.options().check()?;
         return Err(idle("--ema", "tiles of several frames"));
@@ -191,7 +181,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         return Err(idle("--quick", "point sets"));
     }
     let (text, json) =
-        args.threads.install(|| if args.prefix { prefix(args, &contents) } else { all(args, &contents) })??;
+        args.threads.install(|| if args.prefix { prefix(args, &contents) } else { all(args, &contents) })?;
     args.report.print(args.plot.as_deref(), &text, &json)
 }
 
@@ -236,8 +226,8 @@ fn points(args: &Args, path: &Path, table: &Table, text: &mut String) -> Result<
     Ok(value)
 }
 
-fn tile(args: &Args, path: &Path, samples: &Samples, text: &mut String) -> Result<Value> {
-    let report = metrics::measure_tile(&samples.view()?, &args.options())?;
+fn tile(args: &Args, path: &Path, samples: &TileSamples, text: &mut String) -> Result<Value> {
+    let report = metrics::measure_tile(&TileView::of(samples)?, &args.options())?;
     let _ = writeln!(text, "{}\n{report}", path.display());
     Ok(json!({ "file": path.to_string_lossy(), "tile": report }))
 }
@@ -254,12 +244,10 @@ fn prefix(args: &Args, contents: &[Content]) -> Result<(String, Value)> {
             ))),
         })
         .collect::<Result<_>>()?;
-    let counts = metrics::log_spaced(sets.first().map_or(0, Points::len), args.per_octave.into());
+    let counts = metrics::log_spaced(sets.first().map_or(0, Points::len), PER_OCTAVE);
     let errors = metrics::prefix_errors(&sets, &counts, args.integrands())?;
     if let Some(path) = &args.plot {
-        let sheet = figure::prefix_errors(&title(&args.files), &errors);
-        let is_svg = read::ending(path) == "svg";
-        output::write(path, &if is_svg { sheet.svg()?.into_bytes() } else { sheet.png()? })?;
+        draw(path, &figure::prefix_errors(&title(&args.files), &errors))?;
     }
     let text = format!(
         "error of the first points, averaged over {} and {} of each family\n{}",

@@ -3,7 +3,6 @@
 use crate::common::Common;
 use crate::drive::{drive, finish};
 use crate::pictures::Pictures;
-use fsot::checkpoint::digest;
 use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::optimize::Optimizer;
@@ -37,26 +36,17 @@ pub(crate) struct Args {
     #[command(flatten)]
     pictures: Pictures,
     #[command(flatten)]
-    common: Common,
+    pub(crate) common: Common,
 }
 
 /// Places objects; writes a table of them, and pictures.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    args.common.threads.install(|| make(args))?
-}
-
-fn make(args: &Args) -> Result<()> {
     let format = Format::of(&args.common.out)?;
     args.pictures.check()?;
     args.common.check_outputs(args.pictures.paths(), args.map.as_deref())?;
     let (points, colours) = (args.n as usize, usize::from(args.colors));
-    let mut map_digest = None;
-    let mut map = None;
-    if let Some(path) = &args.map {
-        let bytes = read::picture(path)?;
-        map_digest = Some(digest(&bytes));
-        map = Some(read::density(&bytes, path, points, true)?);
-    }
+    let map = args.map.as_ref().map(|path| read::density(path, points, true)).transpose()?;
+    let (map, map_digest) = map.unzip();
     let (seed, quality) = (args.common.seed(), args.common.effort());
     let placement = Placement::new(&Options { points, colours, sizes: args.sizes, map, seed, quality })?;
     let mut optimizer = Optimizer::new(placement.problem.clone())?;

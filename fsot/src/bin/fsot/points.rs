@@ -9,8 +9,8 @@ use crate::measure::in_file;
 use crate::names;
 use crate::pictures::Pictures;
 use classes::Classes;
-use fsot::checkpoint::digest;
 use fsot::class::{self, Class, ClassCoordinates};
+use fsot::digest::digest;
 use fsot::error::{Error, Result};
 use fsot::export::points::{Format, Table, encode};
 use fsot::optimize::{Domain, Optimizer, Problem};
@@ -70,15 +70,11 @@ pub(crate) struct Args {
     #[command(flatten)]
     pictures: Pictures,
     #[command(flatten)]
-    common: Common,
+    pub(crate) common: Common,
 }
 
 /// Makes the points, writes and measures them.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    args.common.threads.install(|| make(args))?
-}
-
-fn make(args: &Args) -> Result<()> {
     args.pictures.check()?;
     names::table(&args.common.out, "; --png and --svg draw the points")?;
     args.common.check_outputs(args.pictures.paths(), args.density.as_deref())?;
@@ -198,9 +194,9 @@ fn density(path: &Path, dims: usize, points: usize, invert: bool, files: &mut Ve
             path.display()
         )));
     }
-    let bytes = read::picture(path)?;
-    files.push(digest(&bytes));
-    read::density(&bytes, path, points, invert)
+    let (target, digest) = read::density(path, points, invert)?;
+    files.push(digest);
+    Ok(target)
 }
 
 fn draw(table: &Table, extent: [f32; 2]) -> Drawing {
@@ -209,11 +205,11 @@ fn draw(table: &Table, extent: [f32; 2]) -> Drawing {
     let radius = (0.1 * extent[0] * extent[1] / (std::f32::consts::PI * table.points.len() as f32)).sqrt();
     let radius = radius.clamp(0.5 / PICTURE, 0.02);
     match &table.classes {
-        None => drawing.dots(table.points.iter(), 1.0, radius, BLACK),
+        None => drawing.dots(table.points.iter(), radius, BLACK),
         Some(labels) => {
             for (class, colour) in (0..labels.names.len()).zip(COLOURS.iter().cycle()) {
                 let members = table.points.iter().zip(&labels.index).filter(|(_, index)| **index == class);
-                drawing.dots(members.map(|(point, _)| point), 1.0, radius, *colour);
+                drawing.dots(members.map(|(point, _)| point), radius, *colour);
             }
         }
     }

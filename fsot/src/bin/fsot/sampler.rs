@@ -10,7 +10,7 @@ use fsot::output::{self, Outputs};
 use fsot::sampler::problem::{OCTAVES, iterations};
 use fsot::sampler::sidecar::SamplerOctave;
 use fsot::sampler::{SamplerOptimizer, SamplerProblem, SamplerSidecar};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::fmt::Write;
 
 /// What `fsot sampler` is asked for.
@@ -34,15 +34,11 @@ pub(crate) struct Args {
     #[arg(allow_negative_numbers = true)]
     border: f32,
     #[command(flatten)]
-    common: Common,
+    pub(crate) common: Common,
 }
 
 /// Makes the table and writes it.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    args.common.threads.install(|| make(args))?
-}
-
-fn make(args: &Args) -> Result<()> {
     let out = &args.common.out;
     names::sampler(out)?;
     let beside = (!output::is_stream(out)).then(|| sidecar::path(out));
@@ -50,7 +46,7 @@ fn make(args: &Args) -> Result<()> {
     beside.iter().try_for_each(|path| sidecar::check::<SamplerSidecar>(path))?;
     let problem = problem(args)?;
     let mut optimizer = SamplerOptimizer::new(problem.clone())?;
-    let run = drive(&mut optimizer, &description(&problem), &args.common)?;
+    let run = drive(&mut optimizer, &json!({ "command": "sampler", "sampler": problem }), &args.common)?;
     let (table, report) = (optimizer.table(), optimizer.measure());
     let mut outputs = Outputs::new();
     outputs.add(out, &table.bytes())?;
@@ -87,15 +83,6 @@ fn problem(args: &Args) -> Result<SamplerProblem> {
     };
     problem.validate()?;
     Ok(problem)
-}
-
-/// All that the table depends on.
-fn description(problem: &SamplerProblem) -> Value {
-    let SamplerProblem { size, bits, weights, exponent, mean, border, heat, candidates, iterations, seed } = problem;
-    json!({
-        "command": "sampler", "size": size, "bits": bits, "weights": weights, "exponent": exponent, "mean": mean,
-        "border": border, "heat": heat, "candidates": candidates, "iterations": iterations, "seed": seed,
-    })
 }
 
 /// The command that makes the same file wherever it runs.

@@ -1,12 +1,12 @@
 //! `fsot spectrum`.
 
 use crate::common::Threads;
-use crate::measure::{Content, Tile, idle, title};
+use crate::measure::{Content, Tile, draw, idle, title};
 use crate::names;
 use fsot::error::{Error, Result};
 use fsot::metrics::figure::{self, Subject};
-use fsot::metrics::{Spectrum, error_spectrum};
-use fsot::output::{self, Outputs};
+use fsot::metrics::{Spectrum, TileView, error_spectrum};
+use fsot::output;
 use std::path::{Path, PathBuf};
 
 /// What `fsot spectrum` is asked for.
@@ -15,12 +15,9 @@ pub(crate) struct Args {
     /// Point sets of as many points each, or tiles of the same size; their spectra are averaged
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The PNG file to write
-    #[arg(long, short, value_name = "PNG")]
+    /// The picture to write, as SVG if the name ends so, else as PNG
+    #[arg(long, short, value_name = "FILE")]
     out: PathBuf,
-    /// Write it as SVG too, to the same name with the ending .svg
-    #[arg(long)]
-    svg: bool,
     /// Which two coordinates of the points [default: 1 2]
     #[arg(long, value_name = "COORDINATE", num_args = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
     axes: Option<Vec<u8>>,
@@ -35,21 +32,10 @@ pub(crate) struct Args {
 
 /// Computes the spectra and draws their average.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    let svg = args.out.with_extension("svg");
-    if args.svg && svg == args.out {
-        return Err(Error::Input(format!("{}: with --svg, give --out the name of the PNG file", svg.display())));
-    }
-    names::picture(&args.out, &["png"])?;
-    let outs = [args.out.as_path()].into_iter().chain(args.svg.then_some(svg.as_path()));
-    output::check(outs, args.files.iter().map(PathBuf::as_path))?;
-    let (spectrum, subject) = args.threads.install(|| average(args))??;
-    let sheet = figure::spectrum(&title(&args.files), &spectrum, subject);
-    let mut outputs = Outputs::new();
-    outputs.add(&args.out, &sheet.png()?)?;
-    if args.svg {
-        outputs.add(&svg, sheet.svg()?.as_bytes())?;
-    }
-    outputs.commit()
+    names::picture(&args.out, &["png", "svg"])?;
+    output::check([args.out.as_path()], args.files.iter().map(PathBuf::as_path))?;
+    let (spectrum, subject) = args.threads.install(|| average(args))?;
+    draw(&args.out, &figure::spectrum(&title(&args.files), &spectrum, subject))
 }
 
 fn average(args: &Args) -> Result<(Spectrum, Subject)> {
@@ -80,7 +66,7 @@ fn one(args: &Args, path: &Path) -> Result<(Spectrum, Subject)> {
             Ok((Spectrum::of_points(&table.points, axes)?, Subject::Points))
         }
         Content::Tile(samples) => {
-            Ok((error_spectrum(&samples.view()?, args.integrands.unwrap_or(256) as usize)?, Subject::Tile))
+            Ok((error_spectrum(&TileView::of(&samples)?, args.integrands.unwrap_or(256) as usize)?, Subject::Tile))
         }
     }
 }

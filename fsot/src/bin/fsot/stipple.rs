@@ -6,14 +6,14 @@ mod frames;
 pub(crate) use args::Args;
 
 use crate::drive::{drive, finish};
+use crate::measure::in_file;
 use args::Picture;
-use fsot::checkpoint::digest;
 use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::export::points::Table;
 use fsot::optimize::Optimizer;
 use fsot::output::Outputs;
-use fsot::picture::{Photo, blurred_psnr, check_size, rasterise};
+use fsot::picture::{blurred_psnr, check_size, png, rasterise};
 use fsot::read;
 use fsot::stipple::Stipple;
 use serde_json::json;
@@ -22,33 +22,32 @@ use std::path::Path;
 
 /// Stipples a picture or an animation.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    args.common.threads.install(|| match (&args.image, &args.frames) {
+    match (&args.image, &args.frames) {
         (Some(image), None) => picture(args, image),
         (_, Some(frames)) => frames::animation(args, frames),
         (None, None) => Err(Error::input("give a picture, or the pictures of an animation with --frames")),
-    })?
+    }
 }
 
 fn picture(args: &Args, image: &Path) -> Result<()> {
     let format = Picture::of(&args.common.out)?;
     args.copies.check()?;
     args.common.check_outputs(args.copies.paths(), [image])?;
-    let bytes = read::picture(image)?;
-    let named = |why| Error::Input(format!("{}: {why}", image.display()));
-    let photo = Photo::new(&read::decode_image(&bytes, image)?).map_err(named)?;
+    let (photo, digest) = read::photo(image)?;
     let options = args.options(args.n.unwrap_or(0) as usize);
-    let stipple = Stipple::new(&photo, &options).map_err(named)?;
+    let stipple = Stipple::new(&photo, &options).map_err(in_file(image))?;
     let size = args.size(stipple.spacing());
     check_size(photo.extent(), size as f32)?;
     let mut optimizer = Optimizer::new(stipple.problem.clone())?;
-    let run = drive(&mut optimizer, &args.description(&[digest(&bytes)], &options), &args.common)?;
+    let run = drive(&mut optimizer, &args.description(&[digest], &options), &args.common)?;
 
     let points = optimizer.points();
     drop(optimizer);
     let drawing = stipple.drawing(&points);
     let drawn = rasterise(&drawing, size as f32)?;
     let mut outputs = Outputs::new();
-    outputs.add(&args.common.out, &format.encode(&drawing, &drawn, size)?)?;
+    let picture = if format == Picture::Png { png(&drawn)? } else { format.encode(&drawing, size)? };
+    outputs.add(&args.common.out, &picture)?;
     let table = Table { points, classes: Some(stipple.labels()) };
     args.copies.add(&mut outputs, &drawing, size, &table)?;
     finish(outputs, &run)?;

@@ -3,14 +3,14 @@
 use crate::common::Common;
 use crate::drive::{Run, drive, finish};
 use crate::names;
-use fsot::checkpoint::digest;
+use fsot::digest::digest;
 use fsot::error::{Error, Result};
 use fsot::export::nft::{self, TileFile};
 use fsot::export::sidecar::{self, Quality, Sidecar};
 use fsot::metrics::{TileOptions, TileReport, TileView, measure_tile};
 use fsot::output::{self, Outputs};
-use fsot::tile::{self, ClassShare, Kernel, TemporalKernel, TileOptimizer, TileProblem, presets};
-use noisefloor::tile::Shape;
+use fsot::tile::{self, ClassShare, Kernel, TemporalKernel, TileOptimizer, TileProblem, preset};
+use noisefloor::tile::{Builtin, Shape};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -67,7 +67,7 @@ pub(crate) struct Args {
     #[arg(value_parser = clap::value_parser!(u32).range(1..=65536))]
     integrands: u32,
     #[command(flatten)]
-    common: Common,
+    pub(crate) common: Common,
 }
 
 fn bits(text: &str) -> std::result::Result<u32, String> {
@@ -80,10 +80,6 @@ fn bits(text: &str) -> std::result::Result<u32, String> {
 
 /// Makes the tile, writes and measures it.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    args.common.threads.install(|| make(args))?
-}
-
-fn make(args: &Args) -> Result<()> {
     let out = &args.common.out;
     let sidecar = (!output::is_stream(out)).then(|| sidecar::path(out));
     args.common.check_outputs(sidecar.as_deref(), [])?;
@@ -95,7 +91,7 @@ fn make(args: &Args) -> Result<()> {
     // Refuses what a tile's file cannot hold before the work.
     nft::header(shape, problem.seed, &kernel)?;
     let mut optimizer = TileOptimizer::new(problem.clone())?;
-    let run = drive(&mut optimizer, &description(&problem), &args.common)?;
+    let run = drive(&mut optimizer, &json!({ "command": "tile", "tile": problem }), &args.common)?;
 
     let samples = optimizer.samples();
     let file = TileFile::new(shape, problem.seed, &kernel, &samples.coordinates)?;
@@ -122,7 +118,7 @@ fn make(args: &Args) -> Result<()> {
 
 fn problem(args: &Args) -> Result<TileProblem> {
     let mut problem = match &args.preset {
-        Some(name) => presets::preset(name).ok_or_else(|| {
+        Some(name) => Builtin::ALL.into_iter().find(|tile| tile.name() == name).map(preset).ok_or_else(|| {
             Error::Input(format!("--preset {name}: there is no such tile; `fsot info` lists those there are"))
         })?,
         None => TileProblem {
@@ -166,25 +162,6 @@ fn shape(problem: &TileProblem, bits: u32) -> Shape {
         bits,
         progressive: problem.progressive,
     }
-}
-
-/// All that the samples depend on.
-fn description(problem: &TileProblem) -> Value {
-    let TileProblem { box_class, projections, steps, .. } = problem;
-    json!({
-        "command": "tile", "size": problem.size, "spp": problem.spp, "dims": problem.dims, "frames": problem.frames,
-        "kernel": format!("{:?}", problem.kernel), "reconstruction": format!("{:?}", problem.reconstruction),
-        "temporal-kernel": problem.temporal.as_ref().map(|kernel| format!("{kernel:?}")),
-        "progressive": problem.progressive, "seed": problem.seed, "iterations": problem.iterations,
-        "box-share": box_class.share, "box-weight": box_class.weight,
-        "parameters": format!(
-            "{:?}",
-            (
-                &problem.prefixes, problem.frame_share, problem.directions, projections, steps,
-                problem.offset_correction, problem.threshold_exponent, problem.domain,
-            )
-        ),
-    })
 }
 
 fn measure(file: &TileFile, problem: &TileProblem, integrands: usize) -> Result<TileReport> {

@@ -26,18 +26,6 @@ pub enum Subject {
     Tile,
 }
 
-impl Sheet {
-    /// The sheet as a PNG file.
-    pub fn png(&self) -> crate::error::Result<Vec<u8>> {
-        raster::png(self)
-    }
-
-    /// The sheet as an SVG file.
-    pub fn svg(&self) -> crate::error::Result<String> {
-        vector::svg(self)
-    }
-}
-
 /// The periodogram with zero frequency in the centre, and beside it the radial average and the anisotropy.
 ///
 /// Grey levels are `1 - 2^-power`: black no power, middle grey white noise.

@@ -9,18 +9,21 @@ use image::{Rgb, RgbImage};
 /// Letters of 8 by 8 cells: width and height of a cell in pixels.
 const CELL: [u32; 2] = [1, 2];
 
-pub(super) fn png(sheet: &Sheet) -> Result<Vec<u8>> {
-    let mut image = RgbImage::from_pixel(sheet.width, sheet.height, Rgb([255; 3]));
-    for element in &sheet.elements {
-        match element {
-            Element::Line { points, colour, width } => {
-                points.windows(2).for_each(|ends| segment(&mut image, ends[0], ends[1], *colour, *width));
+impl Sheet {
+    /// The sheet as a PNG file.
+    pub fn png(&self) -> Result<Vec<u8>> {
+        let mut image = RgbImage::from_pixel(self.width, self.height, Rgb([255; 3]));
+        for element in &self.elements {
+            match element {
+                Element::Line { points, colour, width } => {
+                    points.windows(2).for_each(|ends| segment(&mut image, ends[0], ends[1], *colour, *width));
+                }
+                Element::Text { at, anchor, text, colour } => words(&mut image, *at, *anchor, text, *colour),
+                Element::Picture { at, size, side, grey } => grey_picture(&mut image, *at, *size, *side, grey),
             }
-            Element::Text { at, anchor, text, colour } => words(&mut image, *at, *anchor, text, *colour),
-            Element::Picture { at, size, side, grey } => grey_picture(&mut image, *at, *size, *side, grey),
         }
+        picture::png(&image)
     }
-    picture::png(&image)
 }
 
 /// Covers a pixel by its distance to the segment.

@@ -1,11 +1,12 @@
 //! Starting positions: points spread along a space-filling curve.
 
 use super::density::ImageTarget;
+use crate::points::BELOW_ONE;
 use crate::target::Target;
 use noisefloor::rng::Rng;
 
 /// Spreads points over densities of the same grid: `counts[k]` points for `targets[k]`, the sets one after the other,
-/// x and y of each point.
+/// x and y of each point, below 1.
 ///
 /// All sets are drawn in one walk along a Hilbert curve: a point is due each time another unit of mass lies behind,
 /// and it goes to the set that is furthest behind its own mass. Every set and every union then has about the right
@@ -57,6 +58,7 @@ pub fn spread(targets: &[&ImageTarget], counts: &[usize], rng: &mut Rng) -> Vec<
             all.extend(point);
         }
     }
+    all.iter_mut().for_each(|x| *x = x.min(BELOW_ONE));
     all
 }
 

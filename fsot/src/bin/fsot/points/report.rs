@@ -39,8 +39,9 @@ pub(super) fn report(out: &Path, table: &Table, classes: &Classes, run: &Run) ->
     }
     let prefixes = classes.prefixes();
     if !prefixes.is_empty() {
-        // The last ones: the error of a handful of points says little.
-        let counts = if prefixes.len() <= ROWS { prefixes.to_vec() } else { metrics::log_spaced(points.len(), 1) };
+        // Between prefixes the error is larger. The last is among them.
+        let every = prefixes.len().div_ceil(ROWS);
+        let counts: Vec<usize> = prefixes.iter().copied().skip((prefixes.len() - 1) % every).step_by(every).collect();
         let errors = metrics::prefix_errors(std::slice::from_ref(points), &counts, INTEGRANDS)?;
         write!(text, "  errors of the first points\n{}", PrefixTable(&errors)).ok();
         json["prefixes"] = json!(errors);

@@ -5,7 +5,7 @@ use crate::names;
 use fsot::error::{Error, Result};
 use fsot::export::points::{Format, Table, encode};
 use fsot::output::{self, Outputs};
-use fsot::picture::{Drawing, png, svg};
+use fsot::picture::{Drawing, png, rasterise, svg};
 use fsot::read;
 use fsot::stipple::{Options, Tone};
 use serde_json::json;
@@ -28,8 +28,8 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "cmyk")]
     invert: bool,
     /// What "half as dark" means: of encoded values, or of light
-    #[arg(long, value_enum, default_value_t = ToneArgument::Encoded)]
-    tone: ToneArgument,
+    #[arg(long, value_enum, default_value_t)]
+    tone: Tone,
     /// The part of what cyan, magenta and yellow have in common that black replaces, 0 to 1
     #[arg(long, value_name = "PART", default_value_t = 1.0, value_parser = part, allow_negative_numbers = true)]
     #[arg(requires = "cmyk")]
@@ -52,7 +52,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(super) copies: Copies,
     #[command(flatten)]
-    pub(super) common: Common,
+    pub(crate) common: Common,
 }
 
 /// What is drawn, in other forms.
@@ -64,14 +64,6 @@ pub(super) struct Copies {
     /// Also write the points: CSV or JSON by the name's ending, else text
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum ToneArgument {
-    /// Of sRGB-encoded values: even steps of lightness
-    Encoded,
-    /// Of linear light: right where dots are too small to be told apart
-    Linear,
 }
 
 fn part(text: &str) -> std::result::Result<f32, String> {
@@ -108,7 +100,7 @@ impl Args {
             points,
             cmyk: self.cmyk,
             invert: self.invert,
-            tone: if self.linear() { Tone::Linear } else { Tone::Encoded },
+            tone: self.tone,
             grey_component: self.black,
             seed: self.common.seed(),
             quality: self.common.effort(),
@@ -116,7 +108,7 @@ impl Args {
     }
 
     pub(super) fn linear(&self) -> bool {
-        self.tone == ToneArgument::Linear
+        self.tone == Tone::Linear
     }
 
     pub(super) fn size(&self, spacing: f32) -> u32 {
@@ -158,9 +150,9 @@ impl Picture {
         }
     }
 
-    pub(super) fn encode(self, drawing: &Drawing, drawn: &image::RgbImage, size: u32) -> Result<Vec<u8>> {
+    pub(super) fn encode(self, drawing: &Drawing, size: u32) -> Result<Vec<u8>> {
         match self {
-            Picture::Png => png(drawn),
+            Picture::Png => png(&rasterise(drawing, size as f32)?),
             Picture::Svg => Ok(svg(drawing, size as f32).into_bytes()),
         }
     }

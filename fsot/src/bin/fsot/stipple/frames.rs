@@ -2,7 +2,6 @@
 
 use super::args::{Args, Picture};
 use crate::drive::{drive, finish};
-use fsot::checkpoint::digest;
 use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::export::points::Table;
@@ -44,10 +43,9 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     let mut photos = Vec::with_capacity(pictures.len());
     let mut digests = Vec::with_capacity(pictures.len());
     for path in &pictures {
-        let bytes = read::picture(path)?;
-        digests.push(digest(&bytes));
-        let named = |why| Error::Input(format!("{}: {why}", path.display()));
-        photos.push(Photo::new(&read::decode_image(&bytes, path)?).map_err(named)?);
+        let (photo, digest) = read::photo(path)?;
+        photos.push(photo);
+        digests.push(digest);
     }
     let options = args.options(needed);
     let animation = Animation::new(&photos, windows, &options)?;
@@ -60,11 +58,10 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     drop(optimizer);
     let mut outputs = Outputs::new();
     for (frame, path) in outs.iter().enumerate() {
-        let drawing = animation.frame(&points, frame);
-        outputs.add(path, &format.encode(&drawing, &rasterise(&drawing, size as f32)?, size)?)?;
+        outputs.add(path, &format.encode(&animation.frame(&points, frame), size)?)?;
     }
     let all = animation.all(&points);
-    outputs.add(&args.common.out, &format.encode(&all, &rasterise(&all, size as f32)?, size)?)?;
+    outputs.add(&args.common.out, &format.encode(&all, size)?)?;
     let table = Table { points, classes: None };
     args.copies.add(&mut outputs, &all, size, &table)?;
     finish(outputs, &run)?;
