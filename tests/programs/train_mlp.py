@@ -104,6 +104,27 @@ def refusals(program):
             program.run(*few)
     (folder / images).unlink()
     program.refuses(images, "--data", folder)
+    few_classes(program, folder)
+    with open("/dev/full", "w") as full:
+        program.refused(program.start("--help", stdout=full), "output", "--help")
+
+
+def few_classes(program, folder):
+    """More distributions than the labels have signs: refused before a file is written."""
+    relabel(folder, lambda label: label % 3)
+    table = program.folder / "kept.csv"
+    table.write_text("kept")
+    for options in [["--mode", "omis"], ["--mode", "balance"], ["--variance", table]]:
+        program.refuses("--techniques: 8 needs 4 classes, the data have 3", "--data", folder, *options)
+    require(table.read_text() == "kept", "the table was written over before the data were looked at")
+
+
+def relabel(folder, change):
+    """The digits with other labels."""
+    copy_digits(folder)
+    for path in folder.glob("*-labels-*"):
+        data = path.read_bytes()
+        path.write_bytes(data[:8] + bytes(map(change, data[8:])))
 
 
 def copy_digits(folder):
