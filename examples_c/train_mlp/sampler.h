@@ -46,6 +46,16 @@ static void sampler_free(sampler *s)
     free(s->importance);
 }
 
+/* Where no item's derivative has the sign that a table is for, as of outputs that no label names, there is nothing to
+   draw by: it is uniform until a visit finds one. */
+static void sampler_keep_drawable(nf_table *table)
+{
+    nf_shard all;
+    check(nf_table_shard(table, &all), "table of importances");
+    if (all.importance == 0.0)
+        check(nf_table_add_epsilon(table, 1e-20f), "table of importances");
+}
+
 static void sampler_draw_table(sampler *s, uint32_t j, uint32_t count, uint32_t *index, float *weight)
 {
     if (count == 0)
@@ -120,9 +130,11 @@ static void sampler_update(sampler *s, const mlp *net, const workspace *space, c
         for (uint32_t j = 0; j < s->tables; ++j)
             s->importance[(size_t)j * count + r] = part[j];
     }
-    for (uint32_t j = 0; j < s->tables; ++j)
+    for (uint32_t j = 0; j < s->tables; ++j) {
         check(nf_table_update(&s->table[j], index, s->importance + (size_t)j * count, count, gamma),
               "update of the importances");
+        sampler_keep_drawable(&s->table[j]);
+    }
 }
 
 /* At the end of an epoch (Algorithm 3, line 15). */

@@ -14,6 +14,7 @@ ERROR_BOUND = 0.2
 def results(program):
     learns(program)
     variances(program)
+    small(program)
 
 
 def learns(program):
@@ -56,6 +57,13 @@ def small(program):
     few = ["--data", DATA, *"--hidden 9,6 --epochs 2".split()]
     program.run(*few, "--modes", MODES, *"--rows 3 --epsilon 0.001 --stratified".split())
     program.run(*few, "--variance", program.folder / "small.csv")
+    # Two of ten classes: most distributions' signs no item has.
+    folder = program.folder / "gaps"
+    relabel(folder, lambda label: 0 if label < 5 else 9)
+    gaps = ["--data", folder, *"--hidden 9,6 --epochs 2 --techniques 16 --gamma 0".split()]
+    for share in ["0", "0.2"]:
+        program.run(*gaps, "--modes", MODES, "--delta", share)
+        program.run(*gaps, "--variance", program.folder / "gaps.csv", "--delta", share)
 
 
 def refusals(program):
