@@ -24,7 +24,7 @@ static sampler sampler_create(const options *o, enum mode mode, uint32_t items, 
     sampler s = {0};
     s.o = o, s.mode = mode, s.items = items, s.seed = seed;
     s.tables = mode == UNIFORM ? 0 : mode == BALANCE || mode == OMIS ? o->techniques : 1;
-    nf_rng_seed(&s.rng, seed);
+    nf_rng_seed(&s.rng, ((uint64_t)1 << 32) + seed); /* not the numbers that the network begins with */
     size_t bytes = nf_table_size(items);
     for (uint32_t j = 0; j < s.tables; ++j) {
         s.memory[j] = allocate(bytes, 1);
