@@ -18,7 +18,8 @@ int main(int argc, char **argv)
         } else {
             const fit::Picture picture = fit::read_ppm(options.image);
             if (options.batch > picture.pixels())
-                throw std::runtime_error("--batch: more than the picture's pixels");
+                throw std::runtime_error("--batch: " + std::to_string(options.batch) + " is more than the picture's " +
+                                         std::to_string(picture.pixels()) + " pixels");
             (options.variance ? fit::compare_errors : fit::compare_training)(picture, options);
         }
         if (std::fflush(stdout) != 0 || std::ferror(stdout))

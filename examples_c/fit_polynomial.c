@@ -131,8 +131,10 @@ static void measure(const problem *p, const method *m, const options *o, uint32_
 
 static void compare_errors(problem *p, const options *o)
 {
-    if (o->steps / STATES <= o->items / o->batch + 1)
-        fail("--variance", "needs more --steps: the tables start after an epoch");
+    const uint32_t least = STATES * (o->items / o->batch + 2);
+    if (o->steps < least)
+        fail("--variance: the tables start after an epoch, so --steps must be at least %u, not %u", (unsigned)least,
+             (unsigned)o->steps);
     double relative[METHOD_COUNT][STATES][TERMS], bias[METHOD_COUNT][STATES][TERMS];
     memset(relative, 0, sizeof relative);
     memset(bias, 0, sizeof bias);
@@ -197,6 +199,6 @@ int main(int argc, char **argv)
     free(p.basis);
     free(p.target);
     if (fflush(stdout) != 0 || ferror(stdout))
-        fail("standard output", "cannot be written");
+        fail("standard output cannot be written");
     return 0;
 }

@@ -15,6 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+/* MESSAGE: the most bytes that a process says at once: an nf_shard, or up to 8 sums. */
 enum { RANKS = 4, BATCH = 64, MESSAGE = 64, MOST = 20000 };
 static const uint32_t sizes[RANKS] = {12000, 3000, 20000, 5000};
 
@@ -43,6 +44,10 @@ static void all_gather(const void *mine, size_t bytes, void *all)
 {
     char message[MESSAGE] = {0}, gathered[RANKS][MESSAGE];
     int r;
+    if (bytes > MESSAGE) {
+        fprintf(stderr, "process %d: %zu bytes are more than a message of %d\n", rank, bytes, MESSAGE);
+        exit(1);
+    }
     memcpy(message, mine, bytes);
     if (!transfer(0, up[rank][1], message, MESSAGE) || !transfer(1, down[rank][0], gathered, sizeof gathered))
         exit(1);

@@ -35,10 +35,9 @@ static double exact(uint32_t x, uint32_t y)
 static bool run()
 {
     std::vector<float> u(2 * width * height), f(width * height);
-    nf_sampler first = nf_sampler_pixel(0, 0, 0, 0);
-    const uint32_t dims = 2;
-    if (nf_sampler_fill(&first, &dims, 1, width, height, 1, u.data(), u.size()) != NF_OK)
-        throw std::runtime_error("nf_sampler_fill refuses its arguments");
+    const nf_sampler first[] = {nf_sampler_pixel(0, 0, 0, 0)};
+    const uint32_t dims[] = {2};
+    nf::fill(first, dims, width, height, 1, u);
 
     const nf::config config = nf::config(2, 3).with_stratified_samples();
     const nf::image image(width, height);

@@ -189,6 +189,8 @@ int main(int count, char **words)
         fail("%s: the test images are unlike the training images", o.data);
     if (train.classes < 2)
         fail("%s: one class alone is nothing to learn", o.data);
+    if (options_use_techniques(&o) && o.techniques > 2 * train.classes)
+        fail("--techniques: %u needs %u classes, the data have %u", o.techniques, o.techniques / 2, train.classes);
     if (o.variance != NULL)
         measure_variance(&o, &train, &test);
     else

@@ -69,6 +69,9 @@ using if_ends = std::enable_if_t<!std::is_reference_v<C> &&
                                                  decltype(std::declval<const C &>().data())>>;
 template <class C, class = void> inline constexpr bool ends = false;
 template <class C> inline constexpr bool ends<C, if_ends<C>> = true;
+// std::is_trivial, which C++26 deprecates.
+template <class T>
+inline constexpr bool trivial = std::is_trivially_copyable_v<T> && std::is_trivially_default_constructible_v<T>;
 // A span in a struct, which outlives the expression that makes it.
 template <class T> class kept : public span<T> {
 public:
@@ -88,14 +91,14 @@ public:
     constexpr memory(void *data, std::size_t bytes) noexcept : data_(data), bytes_(bytes) {}
     template <class T, std::size_t N> constexpr memory(T (&array)[N]) noexcept : data_(array), bytes_(N * sizeof(T))
     {
-        static_assert(std::is_trivial_v<T>, "memory is overwritten byte by byte");
+        static_assert(detail::trivial<T>, "memory is overwritten byte by byte");
     }
     template <class C, class P = decltype(std::declval<C &>().data()), class = decltype(std::declval<C &>().size()),
               class = std::enable_if_t<std::is_convertible_v<P, void *> && !std::is_same_v<std::decay_t<C>, memory>>>
     constexpr memory(C &&container) noexcept
         : data_(container.data()), bytes_(static_cast<std::size_t>(container.size()) * sizeof(*container.data()))
     {
-        static_assert(std::is_trivial_v<std::remove_pointer_t<P>>, "memory is overwritten byte by byte");
+        static_assert(detail::trivial<std::remove_pointer_t<P>>, "memory is overwritten byte by byte");
     }
 
     constexpr void *data() const noexcept { return data_; }
@@ -742,10 +745,20 @@ public:
     }
     // One number.
     [[nodiscard]] float draw() const noexcept { return draw<1>()[0]; }
-    // As many numbers as `u` holds, at most 4; more stay as they are.
-    void draw(span<float> u) const noexcept
+    // As many numbers as `u` has places: 1 to 4, else it does not compile.
+    template <std::size_t N> void draw(std::array<float, N> &u) const noexcept { u = draw<N>(); }
+    template <std::size_t N> void draw(float (&u)[N]) const noexcept
     {
-        nf_sampler_draw(state_, u.size() < 4 ? static_cast<std::uint32_t>(u.size()) : 4u, u.data());
+        static_assert(N <= 4, "a domain has 1 to 4 numbers");
+        nf_sampler_draw(state_, std::uint32_t{N}, u);
+    }
+    // status::range unless there are 1 to 4 places.
+    returned<void> draw(span<float> u) const
+    {
+        const bool fits = u.size() >= 1 && u.size() <= 4;
+        if (fits)
+            nf_sampler_draw(state_, static_cast<std::uint32_t>(u.size()), u.data());
+        return detail::finish(fits ? NF_OK : NF_ERR_RANGE);
     }
     const nf_sampler &state() const noexcept { return state_; }
 
@@ -793,10 +806,20 @@ public:
     }
     // The first coordinate.
     [[nodiscard]] float draw() const noexcept { return draw<1>()[0]; }
-    // As many coordinates as `u` holds, at most 4; more stay as they are.
-    void draw(span<float> u) const noexcept
+    // As many coordinates as `u` has places: 1 to 4, else it does not compile.
+    template <std::size_t N> void draw(std::array<float, N> &u) const noexcept { u = draw<N>(); }
+    template <std::size_t N> void draw(float (&u)[N]) const noexcept
     {
-        nf_tile_sampler_draw(state_, u.size() < 4 ? static_cast<std::uint32_t>(u.size()) : 4u, u.data());
+        static_assert(N <= 4, "a domain has 1 to 4 dimensions");
+        nf_tile_sampler_draw(state_, std::uint32_t{N}, u);
+    }
+    // status::range unless there are 1 to 4 places.
+    returned<void> draw(span<float> u) const
+    {
+        const bool fits = u.size() >= 1 && u.size() <= 4;
+        if (fits)
+            nf_tile_sampler_draw(state_, static_cast<std::uint32_t>(u.size()), u.data());
+        return detail::finish(fits ? NF_OK : NF_ERR_RANGE);
     }
     const nf_tile_sampler &state() const noexcept { return state_; }
 

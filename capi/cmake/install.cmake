@@ -15,7 +15,7 @@ foreach(header IN ITEMS noisefloor.h noisefloor.hpp noisefloor_sampler.h)
     install(FILES "${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 endforeach()
 file(REAL_PATH "${headers}/noisefloor" parts)
-install(DIRECTORY "${parts}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(DIRECTORY "${parts}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" FILES_MATCHING PATTERN "*.h")
 # The tiles as files: for programs that read them (nf_tile_from_bytes), in place of the library's own.
 # Outside the workspace there are none.
 set(tilesdir "")

@@ -12,7 +12,7 @@ void platform_stack_paint(void);
 /* Bytes of stack that were written below the caller's own since the last painting. */
 uint32_t platform_stack_used(void);
 
-/* Calls every service, prints what each returned, and returns 0 if all succeeded. */
+/* Calls these services, prints what each returned, and returns 0 if all succeeded. */
 int services(void);
 
 #endif

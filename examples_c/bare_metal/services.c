@@ -1,5 +1,6 @@
-/* Every service of noisefloor without an operating system, a C library or a heap. Prints the bits of what it computes,
-   which are the same on every target, and the stack that each call used. */
+/* noisefloor without an operating system, a C library or a heap: draws from a tile, estimates of one pixel, at once and
+   streamed, MIS and minibatches. Prints the bits of what it computes, which are the same on every target, and the stack
+   that each call used. */
 #include "platform.h"
 #include "noisefloor.h"
 
@@ -64,7 +65,7 @@ static void line(const char *name, nf_status status, uint32_t first, uint32_t se
 
 static void tile(void)
 {
-    nf_tile tile;
+    nf_tile tile = {0}; /* What is printed after an error, too. */
     uint32_t i;
     nf_status status;
     platform_stack_paint();

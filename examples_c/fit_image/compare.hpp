@@ -40,8 +40,9 @@ inline void compare_training(const Picture &picture, const Options &options)
         for (std::size_t m = 0; m < options.chosen.size(); ++m) {
             const Method &method = *options.chosen[m];
             Trainer trainer(picture, options, seed);
+            // Not the numbers that the network begins with.
             Sampler sampler(method, std::uint32_t(picture.pixels()), options.batch, options.uniform_fraction,
-                            options.momentum, options.stratified, seed);
+                            options.momentum, options.stratified, seed + 1000);
             double seconds = 0.0, loss = 0.0;
             std::uint32_t step = 0;
             for (std::uint32_t record = 1; record <= options.records; ++record) {

@@ -81,16 +81,17 @@ inline Options parse(int argc, char **argv)
             throw std::runtime_error(name + ": unknown option, or its value is missing");
         const std::string text = argv[i];
         const auto number = [&](double low, double high) {
-            char *end = nullptr;
+            char *end = nullptr, range[64];
             const double value = std::strtod(text.c_str(), &end);
+            std::snprintf(range, sizeof range, "%g to %g", low, high);
             if (text.empty() || *end || !(value >= low && value <= high))
-                throw std::runtime_error(name + ": not a number in its range: " + text);
+                throw std::runtime_error(name + ": `" + text + "` is not a number from " + range);
             return value;
         };
         const auto whole = [&](double low, double high, std::uint32_t unit = 1) {
             const double value = number(low, high);
             if (std::fmod(value, unit) != 0.0)
-                throw std::runtime_error(name + ": not a multiple of " + std::to_string(unit) + ": " + text);
+                throw std::runtime_error(name + ": `" + text + "` is not a multiple of " + std::to_string(unit));
             return std::uint32_t(value);
         };
         if (name == "--image")

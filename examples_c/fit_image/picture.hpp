@@ -49,7 +49,7 @@ inline Picture read_ppm(const std::string &path)
     std::ifstream file(path, std::ios::binary);
     if (!file)
         throw std::runtime_error(path + ": cannot be opened");
-    const auto bad = [&path](const char *why) { return std::runtime_error(path + ": " + why); };
+    const auto bad = [&path](const std::string &why) { return std::runtime_error(path + ": " + why); };
     std::string kind;
     file >> kind;
     if (kind != "P6")
@@ -63,7 +63,8 @@ inline Picture read_ppm(const std::string &path)
     }
     const auto [width, height, largest] = numbers;
     if (largest != 255 || width < 16 || height < 16 || width > 4096 || height > 4096)
-        throw bad("not 16 x 16 to 4096 x 4096 pixels of 8 bits");
+        throw bad(std::to_string(width) + " x " + std::to_string(height) + " pixels of 0 to " +
+                  std::to_string(largest) + ": not 16 x 16 to 4096 x 4096 of 8 bits, 0 to 255");
     file.get(); // one white space
     std::vector<std::uint8_t> rows(3 * width * height);
     if (!file.read(reinterpret_cast<char *>(rows.data()), std::streamsize(rows.size())))

@@ -36,10 +36,10 @@ static double number(const char *name, const char *text, double low, double high
 {
     char *end = NULL;
     double value = text ? strtod(text, &end) : 0.0;
-    if (!text || end == text || *end || !(value >= low && value <= high)) {
-        fprintf(stderr, "fit_polynomial: %s needs a number in %g..%g\n", name, low, high);
-        exit(1);
-    }
+    if (!text)
+        fail("%s: its value is missing: a number from %g to %g", name, low, high);
+    if (end == text || *end || !(value >= low && value <= high))
+        fail("%s: `%s` is not a number from %g to %g", name, text, low, high);
     return value;
 }
 
@@ -47,7 +47,7 @@ static uint32_t whole(const char *name, const char *text, double low, double hig
 {
     double value = number(name, text, low, high);
     if (value != floor(value))
-        fail(name, "not a whole number");
+        fail("%s: `%s` is not a whole number", name, text);
     return (uint32_t)value;
 }
 
@@ -59,7 +59,7 @@ static options parse(int argc, char **argv)
         if (strcmp(name, "--help") == 0) {
             usage(stdout);
             if (fflush(stdout) != 0)
-                fail("standard output", "cannot be written");
+                fail("standard output cannot be written");
             exit(0);
         }
         if (strcmp(name, "--variance") == 0) {
@@ -89,13 +89,13 @@ static options parse(int argc, char **argv)
             o.beta = number(name, text, 0.0, 0.99);
         else {
             usage(stderr);
-            fail(name, "unknown option");
+            fail("there is no option `%s`", name);
         }
     }
     if (o.batch % MAX_TABLES != 0)
-        fail("--batch", "not a multiple of 4");
+        fail("--batch: %u is not a multiple of %d", (unsigned)o.batch, MAX_TABLES);
     if (o.batch > o.items)
-        fail("--batch", "more than --items");
+        fail("--batch: %u is more than --items, %u", (unsigned)o.batch, (unsigned)o.items);
     return o;
 }
 

@@ -50,7 +50,7 @@ inline Image read_pfm(const std::string &path)
     return image;
 }
 
-// Files appear under their names when all of them are complete, or not at all.
+// Files appear under their names when all of them are complete.
 class Outputs {
 public:
     Outputs() = default;
@@ -79,15 +79,15 @@ public:
             throw std::runtime_error("cannot write " + temporary);
     }
 
+    // Where a name cannot be had, those before it stay: what they may have replaced is gone.
     void commit()
     {
-        for (size_t done = 0; done < files_.size(); ++done) {
-            if (std::rename(files_[done].first.c_str(), files_[done].second.c_str()) == 0)
-                continue;
-            const std::string why = std::strerror(errno);
-            for (size_t i = 0; i < done; ++i)
-                std::remove(files_[i].second.c_str());
-            throw std::runtime_error("cannot create " + files_[done].second + ": " + why);
+        std::string done;
+        for (const auto &file : files_) {
+            if (std::rename(file.first.c_str(), file.second.c_str()) != 0)
+                throw std::runtime_error("cannot create " + file.second + ": " + std::strerror(errno) +
+                                         (done.empty() ? "" : "; written:" + done));
+            done += " " + file.second;
         }
         files_.clear();
     }

@@ -24,6 +24,7 @@ struct Options {
     Filter filter = Filter::center;
     std::string output = "pathtracer";
     bool reference = false, scramble = false;
+    bool independent = false; // the table's points are, and estimators are told so
     uint32_t bounces = 0; // of the paths; 0: as the scene has them
     bool mis = false; // the estimators are those of mis_estimators.hpp
     uint32_t accumulate = 0; // samples of a pass over the image; 0: pixel by pixel
@@ -49,8 +50,8 @@ inline void print_usage(FILE *to, const Program &program)
     std::fprintf(
         to,
         "usage: %s [--scene NAME] [--width N] [--height N] [--spp N] [--estimators A,B,...] [--order N]\n"
-        "                  [--basis NAME] [--regressed N] [--sampler NAME] [--tile NAME|FILE.nft] [--table FILE] "
-        "[--filter NAME]\n"
+        "                  [--basis NAME] [--regressed N] [--sampler NAME] [--tile NAME|FILE.nft]\n"
+        "                  [--table FILE [--independent]] [--filter NAME]\n"
         "                  [--frame N] [--seed N] [--seeds N] [--statistics A.pfm,B.pfm] [--threads N] [--output "
         "PREFIX]\n"
         "                  [--accumulate N] [--bounces N] [--mis] [--reference]\n"
@@ -67,6 +68,7 @@ inline void print_usage(FILE *to, const Program &program)
         "--scramble: seeds shift the values of tile and default: exactly unbiased, and not as good.\n"
         "--table: points for the sampler of that name, made elsewhere; their format is in "
         "pathtracer/table_sampler.hpp.\n"
+        "--independent: they are independent, where estimators take them for stratified otherwise.\n"
         "--regressed: how many of the sample vector's numbers the estimators regress, from its start; those told\n"
         "which light was picked regress the numbers up to that instead.\n\nsamplers:",
         program.name.c_str());
@@ -137,16 +139,13 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
         std::string name = argv[i];
         if (name == "--help" || name == "-h")
             return false;
-        if (name == "--scramble") {
-            options.scramble = true;
-            continue;
-        }
-        if (name == "--reference") {
-            options.reference = true;
-            continue;
-        }
-        if (name == "--mis") {
-            options.mis = true;
+        bool *flag = name == "--scramble"      ? &options.scramble
+                     : name == "--reference"   ? &options.reference
+                     : name == "--mis"         ? &options.mis
+                     : name == "--independent" ? &options.independent
+                                               : nullptr;
+        if (flag) {
+            *flag = true;
             continue;
         }
         if (i + 1 == argc)
@@ -221,6 +220,8 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
         throw std::runtime_error(
             std::string(options.bounces ? "--bounces" : "--regressed") +
             " is not for --mis: that is direct light, and regresses the two numbers of each technique");
+    if (options.independent && options.sampler != "table")
+        throw std::runtime_error("--independent is for --sampler table: of the others it is known");
     if (options.accumulate && options.reference)
         throw std::runtime_error("--reference does without --accumulate");
     return true;

@@ -26,7 +26,7 @@ inline EstimatorSetup estimator_setup(const Integrand &integrand, const Options 
     setup.point = light_point(domains);
     setup.side = side;
     setup.samples = options.spp;
-    setup.stratified = options.sampler != "random";
+    setup.stratified = options.sampler != "random" && !options.independent;
     return setup;
 }
 

@@ -100,6 +100,15 @@ static void option_modes(options *o, const char *text)
         fail("--modes names none");
 }
 
+/* Whether anything draws from several distributions, as many as --techniques says. */
+static int options_use_techniques(const options *o)
+{
+    int use = o->variance != NULL;
+    for (uint32_t i = 0; i < o->mode_count; ++i)
+        use |= o->modes[i] == BALANCE || o->modes[i] == OMIS;
+    return use;
+}
+
 static options options_parse(int count, char **words)
 {
     options o = {0};
@@ -113,6 +122,8 @@ static options options_parse(int count, char **words)
         const char *name = words[i];
         if (strcmp(name, "--help") == 0) {
             fputs(usage, stdout);
+            if (fflush(stdout) != 0)
+                fail("cannot write the output");
             exit(EXIT_SUCCESS);
         }
         if (strcmp(name, "--stratified") == 0) {
@@ -178,10 +189,8 @@ static options options_parse(int count, char **words)
         fail("--data FOLDER is missing; --help lists the options");
     if (o.variance != NULL && compared != NULL)
         fail("%s: not with --variance, which has one network, all ways to draw, and batches of its own", compared);
-    for (uint32_t i = 0; i < o.mode_count; ++i)
-        if ((o.modes[i] == BALANCE || o.modes[i] == OMIS) && o.techniques > o.batch)
-            fail("%s: a batch of %u has no item for each of %u distributions", mode_name[o.modes[i]], o.batch,
-                 o.techniques);
+    if (options_use_techniques(&o) && o.techniques > o.batch)
+        fail("--batch: %u items are not one for each of %u distributions", o.batch, o.techniques);
     if (o.rate == 0.0f)
         o.rate = o.adam ? 0.001f : 0.1f;
     return o;

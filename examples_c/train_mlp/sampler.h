@@ -24,7 +24,7 @@ static sampler sampler_create(const options *o, enum mode mode, uint32_t items, 
     sampler s = {0};
     s.o = o, s.mode = mode, s.items = items, s.seed = seed;
     s.tables = mode == UNIFORM ? 0 : mode == BALANCE || mode == OMIS ? o->techniques : 1;
-    nf_rng_seed(&s.rng, seed);
+    nf_rng_seed(&s.rng, ((uint64_t)1 << 32) + seed); /* not the numbers that the network begins with */
     size_t bytes = nf_table_size(items);
     for (uint32_t j = 0; j < s.tables; ++j) {
         s.memory[j] = allocate(bytes, 1);
@@ -44,6 +44,16 @@ static void sampler_free(sampler *s)
     free(s->technique);
     free(s->pdf);
     free(s->importance);
+}
+
+/* Where no item's derivative has the sign that a table is for, as of outputs that no label names, there is nothing to
+   draw by: it is uniform until a visit finds one. */
+static void sampler_keep_drawable(nf_table *table)
+{
+    nf_shard all;
+    check(nf_table_shard(table, &all), "table of importances");
+    if (all.importance == 0.0)
+        check(nf_table_add_epsilon(table, 1e-20f), "table of importances");
 }
 
 static void sampler_draw_table(sampler *s, uint32_t j, uint32_t count, uint32_t *index, float *weight)
@@ -120,9 +130,11 @@ static void sampler_update(sampler *s, const mlp *net, const workspace *space, c
         for (uint32_t j = 0; j < s->tables; ++j)
             s->importance[(size_t)j * count + r] = part[j];
     }
-    for (uint32_t j = 0; j < s->tables; ++j)
+    for (uint32_t j = 0; j < s->tables; ++j) {
         check(nf_table_update(&s->table[j], index, s->importance + (size_t)j * count, count, gamma),
               "update of the importances");
+        sampler_keep_drawable(&s->table[j]);
+    }
 }
 
 /* At the end of an epoch (Algorithm 3, line 15). */

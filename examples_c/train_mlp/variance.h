@@ -96,6 +96,14 @@ static void scan_items(scan *all, const mlp *net, const dataset *data, workspace
                 all->part[j][start + r] = part[j];
         }
     }
+    /* A table of no importance at all is refused; see sampler_keep_drawable(). */
+    for (uint32_t j = 0; j < techniques; ++j) {
+        float largest = 0.0f;
+        for (uint32_t i = 0; i < all->items; ++i)
+            largest = fmaxf(largest, all->part[j][i]);
+        for (uint32_t i = 0; largest == 0.0f && i < all->items; ++i)
+            all->part[j][i] = 1e-20f;
+    }
     all->mean_square = 0.0;
     for (size_t i = 0; i < net->parameters; ++i) {
         all->mean[i] /= all->items;

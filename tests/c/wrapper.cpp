@@ -367,6 +367,22 @@ static void mis()
     CHECK(CODE(nf::optimal_mis::create(counts, 1, {sums.data(), 8})) == nf::status::memory);
 }
 
+// As many numbers as there is room for; a length that is no domain's is refused, and nothing written.
+template <class Sampler> static void draws_into(const Sampler &pixel, const std::array<float, 4> &expected)
+{
+    std::array<float, 3> array{};
+    float plain[4] = {}, room[6] = {};
+    static_assert(noexcept(pixel.draw(array)) && noexcept(pixel.draw(plain)), "what is static cannot fail");
+    pixel.draw(array);
+    pixel.draw(plain);
+    CHECK(std::memcmp(array.data(), expected.data(), sizeof array) == 0);
+    CHECK(std::memcmp(plain, expected.data(), sizeof plain) == 0);
+    CHECK(CODE(pixel.draw({room, 5})) == nf::status::range && CODE(pixel.draw({room, 0})) == nf::status::range);
+    CHECK(CODE(pixel.draw(nf::span<float>())) == nf::status::range && room[0] == 0.0f);
+    SUCCEED(pixel.draw({room, 2}));
+    CHECK(room[1] == expected[1] && room[2] == 0.0f);
+}
+
 static void samplers()
 {
     const nf::sampler pixel(3, 70, 0, 5), child = pixel.domain(7).scramble(9);
@@ -375,9 +391,7 @@ static void samplers()
     const std::array<float, 4> four = pixel.draw<4>();
     CHECK(std::memcmp(four.data(), expected, sizeof expected) == 0);
     CHECK(pixel.draw<2>()[1] == expected[1] && pixel.draw() == expected[0]);
-    std::array<float, 6> drawn{};
-    pixel.draw(drawn);
-    CHECK(drawn[3] == expected[3] && drawn[4] == 0.0f);
+    draws_into(pixel, four);
     nf_sampler_draw(nf_sampler_scramble(nf_sampler_domain(pixel.state(), 7), 9), 3, expected);
     CHECK(child.draw<3>()[2] == expected[2]);
     nf_sampler_draw(nf_sampler_white(3, 70, 1, 5), 1, expected);
@@ -403,9 +417,7 @@ static void tiles()
     const std::array<float, 4> four = pixel.draw<4>();
     CHECK(std::memcmp(four.data(), expected, sizeof expected) == 0);
     CHECK(pixel.draw<2>()[1] == expected[1] && pixel.draw() == expected[0]);
-    std::array<float, 6> drawn{};
-    pixel.draw(drawn);
-    CHECK(drawn[3] == expected[3] && drawn[4] == 0.0f);
+    draws_into(pixel, four);
     nf_tile_sampler_draw(nf_tile_sampler_scramble(nf_tile_sampler_domain(pixel.state(), 7), 9), 3, expected);
     CHECK(child.draw<3>()[2] == expected[2]);
     using u32 = std::uint32_t;

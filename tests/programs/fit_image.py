@@ -49,7 +49,7 @@ def small(program):
 def refusals(program):
     """Pictures and options that are wrong: an error that says why."""
     arguments = write(program, "P6\n# a comment\n17 16\n255\n", 3 * 17 * 16)
-    program.refuses("--batch", *arguments, "--batch", "512")
+    program.refuses("--batch: 512 is more than the picture's 272 pixels", *arguments, "--batch", "512")
     program.refuses("above 17, not 17", *arguments, "--variance", "--steps", "17")
     program.refuses("nowhere/nothing", *arguments, "--steps", "2", "--output", "nowhere/nothing")
     for header, length, word in [
@@ -58,14 +58,14 @@ def refusals(program):
         ("P6\n16 x\n255\n", 768, "header"),
         ("P6\n16 16\n255\n", 767, "ends early"),
         ("P6\n16 16\n65535\n", 1536, "8 bits"),
-        ("P6\n8 16\n255\n", 384, "16 x 16"),
+        ("P6\n8 16\n255\n", 384, "8 x 16 pixels"),
     ]:
         program.refuses(word, *write(program, header, length))
     for word, options in [
         ("nowhere/nothing.ppm", ["--image", "nowhere/nothing.ppm"]),
         ("--nonsense", ["--nonsense", "1"]),
         ("--steps", ["--steps"]),
-        ("--steps", ["--steps", "0"]),
+        ("--steps: `0` is not a number from 1 to 1e+07", ["--steps", "0"]),
         ("--batch", ["--batch", "40"]),
         ("nonsense", ["--methods", "is,nonsense"]),
         ("twice", ["--methods", "is,is"]),

@@ -36,14 +36,15 @@ def refusals(program):
     for word, options in [
         ("--nonsense", "--nonsense 1"),
         ("--seeds", "--seeds"),
-        ("--seeds", "--seeds 0"),
+        ("--seeds: `0` is not a number from 1 to 10000", "--seeds 0"),
         ("--seeds", "--seeds x"),
-        ("--batch", "--batch 33"),
-        ("--batch", "--items 32 --batch 64"),
+        ("--seeds: `1.5`", "--seeds 1.5"),
+        ("--batch: 33", "--batch 33"),
+        ("--batch: 64 is more than --items, 32", "--items 32 --batch 64"),
         ("--rate", "--rate nan"),
         ("--uniform-fraction", "--uniform-fraction 0"),
         ("--beta", "--beta 1"),
-        ("--variance", "--variance --steps 10"),
+        ("at least 132, not 131", "--variance --steps 131"),
     ]:
         program.refuses(word, *options.split())
 

@@ -23,7 +23,8 @@ def main():
     for name in filters:
         check_filter(name)
     check_samplers(samplers)
-    for check in [lambda: check_tiles(tiles), check_seeds, check_table, check_accumulation, check_two_techniques]:
+    check_tiles(tiles)
+    for check in [check_seeds, check_table, check_outputs, check_accumulation, check_two_techniques]:
         check()
     tracer.refuses_each(
         "--estimators nonsense",
@@ -40,6 +41,7 @@ def main():
         "--sampler default --frame 4096",
         "--sampler tile --tile 128_1SPP_2D --spp 1 --frame 4096",
         "--sampler table",
+        "--sampler sobol --independent",
         "--sampler table --table README.md",
         f"--sampler table --table {table} --spp 17",
         "--accumulate 8 --estimators shared",
@@ -154,6 +156,25 @@ def check_table():
         f"the squared error of a grid of points is {error}, that of random points {other}: the table is not used as it "
         "is",
     )
+    # Of stratified points `robust` is the plain mean.
+    for more, is_mean in [("", True), ("--independent", False)]:
+        options = "--scene direct --sampler table --spp 16 --estimators mc,robust --table".split()
+        tracer.render(*options, table, *more.split())
+        same = tracer.values("mc") == tracer.values("robust")
+        require(same == is_mean, f"table {more}: that `robust` is the plain mean is {same}")
+
+
+def check_outputs():
+    """What cannot get its name costs nothing that has."""
+    say("outputs")
+    blocked = tracer.folder / "outputs.robust.pfm"
+    blocked.mkdir()
+    arguments = "--width 8 --height 8 --spp 4 --estimators mc,robust,shared --output".split()
+    done = tracer.start(*arguments, tracer.folder / "outputs")
+    for word in [f"cannot create {blocked}: ", "outputs.mc.pfm"]:
+        tracer.refused(done, word, arguments)
+    left = sorted(path.name for path in tracer.folder.glob("outputs.*"))
+    require(left == ["outputs.mc.pfm", "outputs.robust.pfm"], f"a name that is taken leaves {left}")
 
 
 def check_accumulation():

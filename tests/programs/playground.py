@@ -97,6 +97,10 @@ def main():
         browser.wait("curve.length === COUNTS.length")
         with open(screenshot, "wb") as file:
             file.write(base64.b64decode(browser.call("Page.captureScreenshot")["data"]))
+        # What is chosen anew takes the old curve away.
+        colours = "find('curve').getContext('2d').getImageData(0, 0, 640, 240).data"
+        is_drawn = f"{colours}.some((red, i) => i % 4 === 0 && red > 200)"
+        assert browser.value(is_drawn) and not browser.value(f"changed(), {is_drawn}"), "an old curve is shown"
         browser.value("form.samples.focus()")
         browser.key("ArrowRight", 39)
         browser.wait("settings().samples === 8 && location.hash.includes('samples=8')")

@@ -29,10 +29,10 @@ class Program:
         self.scratch = tempfile.TemporaryDirectory(dir=self.path.parent)
         self.folder = pathlib.Path(self.scratch.name)
 
-    def start(self, *arguments):
+    def start(self, *arguments, stdout=subprocess.PIPE):
         command = [str(self.path), *map(str, arguments)]
-        null = subprocess.DEVNULL
-        return subprocess.run(command, cwd=ROOT, stdin=null, capture_output=True, text=True, errors="replace")
+        null, pipe = subprocess.DEVNULL, subprocess.PIPE
+        return subprocess.run(command, cwd=ROOT, stdin=null, stdout=stdout, stderr=pipe, text=True, errors="replace")
 
     def run(self, *arguments):
         """Runs to the end; returns what the program writes to standard output."""

@@ -14,6 +14,7 @@ ERROR_BOUND = 0.2
 def results(program):
     learns(program)
     variances(program)
+    small(program)
 
 
 def learns(program):
@@ -56,6 +57,13 @@ def small(program):
     few = ["--data", DATA, *"--hidden 9,6 --epochs 2".split()]
     program.run(*few, "--modes", MODES, *"--rows 3 --epsilon 0.001 --stratified".split())
     program.run(*few, "--variance", program.folder / "small.csv")
+    # Two of ten classes: most distributions' signs no item has.
+    folder = program.folder / "gaps"
+    relabel(folder, lambda label: 0 if label < 5 else 9)
+    gaps = ["--data", folder, *"--hidden 9,6 --epochs 2 --techniques 16 --gamma 0".split()]
+    for share in ["0", "0.2"]:
+        program.run(*gaps, "--modes", MODES, "--delta", share)
+        program.run(*gaps, "--variance", program.folder / "gaps.csv", "--delta", share)
 
 
 def refusals(program):
@@ -104,6 +112,27 @@ def refusals(program):
             program.run(*few)
     (folder / images).unlink()
     program.refuses(images, "--data", folder)
+    few_classes(program, folder)
+    with open("/dev/full", "w") as full:
+        program.refused(program.start("--help", stdout=full), "output", "--help")
+
+
+def few_classes(program, folder):
+    """More distributions than the labels have signs: refused before a file is written."""
+    relabel(folder, lambda label: label % 3)
+    table = program.folder / "kept.csv"
+    table.write_text("kept")
+    for options in [["--mode", "omis"], ["--mode", "balance"], ["--variance", table]]:
+        program.refuses("--techniques: 8 needs 4 classes, the data have 3", "--data", folder, *options)
+    require(table.read_text() == "kept", "the table was written over before the data were looked at")
+
+
+def relabel(folder, change):
+    """The digits with other labels."""
+    copy_digits(folder)
+    for path in folder.glob("*-labels-*"):
+        data = path.read_bytes()
+        path.write_bytes(data[:8] + bytes(map(change, data[8:])))
 
 
 def copy_digits(folder):
