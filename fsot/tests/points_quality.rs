@@ -2,7 +2,7 @@
 
 use fsot::class;
 use fsot::metrics::neighbours::{Neighbours, neighbours};
-use fsot::metrics::{prefix_errors, quick, select};
+use fsot::metrics::{PrefixError, prefix_errors, quick, select};
 use fsot::optimize::{Domain, Problem, Quality, optimize};
 use fsot::points::Points;
 use std::ops::Range;
@@ -97,18 +97,29 @@ fn windows_bring_points_into_order() {
     assert!(nn > 0.8, "{nn}");
 }
 
+/// The errors of the first 16, 32, ... 256 points of sets with so many levels.
+fn errors(levels: usize, sets: u64) -> Vec<PrefixError> {
+    let classes = class::progressive(2, levels, 256);
+    let set = |seed| optimize(Problem { classes: classes.clone(), seed, ..Problem::new(256, 2) }).unwrap();
+    prefix_errors(&(0..sets).map(set).collect::<Vec<Points>>(), &[16, 32, 64, 128, 256], 256).unwrap()
+}
+
 /// Squared errors, relative to those of as many random points: at a level, a fraction of those at half and at twice as
 /// many. Without levels the first three fractions are .78 and more.
 #[test]
 fn errors_dip_at_every_level() {
     assert_eq!(class::progressive_prefixes(4, 256), [4, 16, 64, 256]);
-    let set =
-        |seed| optimize(Problem { classes: class::progressive(2, 4, 256), seed, ..Problem::new(256, 2) }).unwrap();
-    let sets: Vec<Points> = (0..8).map(set).collect();
-    let errors = prefix_errors(&sets, &[16, 32, 64, 128, 256], 256).unwrap();
+    let few = errors(4, 8);
     for (level, between) in [(0, 1), (2, 1), (2, 3), (4, 3)] {
-        let (level, between) = (&errors[level], &errors[between]);
+        let (level, between) = (&few[level], &few[between]);
         assert!(level.half_spaces_relative < 0.3 * between.half_spaces_relative, "{level:?} {between:?}");
         assert!(level.gaussians_relative < 0.06 * between.gaussians_relative, "{level:?} {between:?}");
+    }
+    // More levels make shallower dips: with one at every point there are none.
+    let all = errors(256, 2);
+    for (number, (few, all)) in few.iter().zip(&all).enumerate() {
+        let (few, all, factor) = if number % 2 == 0 { (few, all, 1.2) } else { (all, few, 2.0) };
+        assert!(all.half_spaces_relative > factor * few.half_spaces_relative, "{few:?} {all:?}");
+        assert!(all.gaussians_relative > 4.0 * few.gaussians_relative, "{few:?} {all:?}");
     }
 }
