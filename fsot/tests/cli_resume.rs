@@ -88,8 +88,8 @@ fn in_the_last_step() {
     let (mut line, mut said) = (String::new(), BufReader::new(child.stderr.take().unwrap()));
     said.read_line(&mut line).unwrap();
     assert!(line.ends_with("at step 1\n"), "{line}");
-    // The step begins after the line, and takes much longer than this.
-    sleep(Duration::from_millis(300));
+    // The step begins after the line, and takes longer than this: a quarter of a second.
+    sleep(Duration::from_millis(100));
     signal("INT", child.id());
     said.read_to_string(&mut line).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130), "{line}");
