@@ -197,23 +197,6 @@ fn points_go_to_standard_output() {
 }
 
 #[test]
-fn nothing_depends_on_the_number_of_threads() {
-    let place = Place::new();
-    for (command, out) in [
-        ("points -n 3000 -d 2 --classes 3color --iterations 12", "p.txt"),
-        ("points -n 700 -d 5 --toroidal --axis-priority .3 --iterations 12", "p.txt"),
-        ("tile --size 16 --spp 4 --iterations 6 --integrands 8", "t.nft"),
-    ] {
-        let mut outputs = Vec::new();
-        for threads in [1, 2, 5] {
-            place.succeed(&format!("{command} --out {out} --threads {threads}"));
-            outputs.push(place.read(out));
-        }
-        assert!(outputs.iter().all(|output| *output == outputs[0]), "{command}");
-    }
-}
-
-#[test]
 fn an_older_output_is_replaced_and_keeps_its_permissions() {
     let place = Place::new();
     place.write("p.txt", "old");

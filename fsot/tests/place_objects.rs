@@ -1,10 +1,12 @@
 //! Object placement: counts, evenness of every colour and size, files, bad input.
 
+use crate::cli_support::Place;
 use fsot::Error;
+use fsot::metrics::neighbours::neighbours;
 use fsot::optimize::{Quality, optimize};
 use fsot::place::{Object, Options, Placement};
+use fsot::points::Points;
 use fsot::target::image::ImageTarget;
-use std::process::Command;
 
 fn options(points: usize, colours: usize, sizes: bool) -> Options {
     Options { points, colours, sizes, map: None, seed: 3, quality: Quality::Iterations(500) }
@@ -15,14 +17,9 @@ fn objects(options: &Options) -> Vec<Object> {
     placement.objects(&optimize(placement.problem.clone()).unwrap())
 }
 
-/// The mean distance to the nearest neighbour, in units of that of a hexagonal lattice; .465 for random points.
+/// The mean distance to the nearest neighbour.
 fn evenness(objects: &[Object]) -> f64 {
-    let nearest = objects.iter().enumerate().map(|(i, a)| {
-        let others = objects.iter().enumerate().filter(|(j, _)| *j != i);
-        others.map(|(_, b)| f64::from((a.x - b.x).hypot(a.y - b.y))).fold(f64::INFINITY, f64::min)
-    });
-    let hexagonal = (2.0 / (3.0_f64.sqrt() * objects.len() as f64)).sqrt();
-    nearest.sum::<f64>() / objects.len() as f64 / hexagonal
+    neighbours(&Points::new(2, objects.iter().flat_map(|object| [object.x, object.y]).collect())).unwrap().mean
 }
 
 #[test]
@@ -53,8 +50,7 @@ fn colours_and_sizes_together() {
     let placement = Placement::new(&options).unwrap();
     let names: Vec<&str> = placement.problem.classes.iter().map(|class| class.name.as_str()).collect();
     assert_eq!(names, ["colour 0", "colour 1", "colour 2", "all", "small", "large"]);
-    let all =
-        placement.objects(placement.problem.initial.as_ref().unwrap_or(&fsot::points::Points::new(2, vec![0.5; 202])));
+    let all = placement.objects(&Points::new(2, vec![0.5; 202]));
     let counts: Vec<usize> = (0..3).map(|color| all.iter().filter(|object| object.color == color).count()).collect();
     assert_eq!(counts, [34, 34, 33]);
     assert!(all.iter().all(|object| object.size > 0.0 && object.size < 1.0));
@@ -76,32 +72,22 @@ fn what_cannot_be_placed() {
 
 #[test]
 fn tables_and_pictures_are_written() {
-    let folder = tempfile::tempdir().unwrap();
-    let run = |arguments: &[&str]| {
-        Command::new(env!("CARGO_BIN_EXE_fsot"))
-            .current_dir(folder.path())
-            .arg("place")
-            .args(arguments)
-            .output()
-            .unwrap()
-    };
-    let output =
-        run(&["-n", "90", "--colors", "3", "--iterations", "10", "-o", "a.csv", "--png", "a.png", "--svg", "a.svg"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = std::fs::read_to_string(folder.path().join("a.csv")).unwrap();
-    assert_eq!(text.lines().next(), Some("x,y,color,size"));
-    assert_eq!(text.lines().count(), 91);
-    assert!(image::open(folder.path().join("a.png")).is_ok());
-    assert_eq!(std::fs::read_to_string(folder.path().join("a.svg")).unwrap().matches("<polygon").count(), 270);
-    assert!(run(&["-n", "20", "--sizes", "--iterations", "5", "-o", "a.json"]).status.success());
-    let json: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(folder.path().join("a.json")).unwrap()).unwrap();
+    let place = Place::new();
+    place.succeed("place -n 90 --colors 3 --iterations 10 -o a.csv --png a.png --svg a.svg");
+    let text = |name: &str| String::from_utf8(place.read(name)).unwrap();
+    assert_eq!(text("a.csv").lines().next(), Some("x,y,color,size"));
+    assert_eq!(text("a.csv").lines().count(), 91);
+    assert!(image::open(place.path("a.png")).is_ok());
+    assert_eq!(text("a.svg").matches("<polygon").count(), 270);
+    place.succeed("place -n 20 --sizes --iterations 5 -o a.json");
+    let json: serde_json::Value = serde_json::from_str(&text("a.json")).unwrap();
     assert_eq!(json["objects"].as_array().unwrap().len(), 20);
     assert_eq!(json["colors"].as_array().unwrap().len(), 1);
-    for arguments in
-        [&["-n", "2", "--colors", "3", "-o", "b.csv"][..], &["-n", "5", "-o", "b.txt"], &["-n", "0", "-o", "b.csv"]]
-    {
-        assert_eq!(run(arguments).status.code(), Some(2), "{arguments:?}");
-        assert!(!folder.path().join("b.csv").exists());
+    for (arguments, message) in [
+        ("-n 2 --colors 3 -o b.csv", "2 objects cannot have 3 colours"),
+        ("-n 5 -o b.txt", "b.txt is no name for a table"),
+        ("-n 0 -o b.csv", "0 is not in"),
+    ] {
+        place.refuse(&format!("place {arguments}"), message);
     }
 }

@@ -211,11 +211,6 @@ fn every_error_says_what_is_wrong() {
         (with(|p| p.classes[0].weight = 0.0), "weight 0"),
         (with(|p| p.classes[0].target = Arc::new(Uniform::new(3))), "target of 3 dimensions"),
         (with(|p| p.classes[0].function = ClassFunction::Box { from: 0.5, to: 0.5 }), "from 0.5 to 0.5"),
-        (with(|p| p.classes[0].function = ClassFunction::Staircase(vec![])), "without steps"),
-        (with(|p| p.classes[0].function = ClassFunction::Tabulated(vec![])), "empty"),
-        (with(|p| p.classes[0].function = ClassFunction::Tabulated(vec![2.0])), "holds 2"),
-        (with(|p| p.classes[0].function = ClassFunction::Gaussian { center: vec![0.5], sigma: 0.0 }), "sigma 0"),
-        (with(|p| p.classes[0].function = ClassFunction::Gaussian { center: vec![], sigma: 1.0 }), "one or two"),
         (
             with(|p| p.classes[0].function = ClassFunction::Rectangle { from: [0.0; 2], to: [1.0; 2] }),
             "points have only an index",

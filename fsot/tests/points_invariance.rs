@@ -66,14 +66,8 @@ fn resumed_anywhere() {
             let mut resumed = Optimizer::new(problem.clone()).unwrap();
             assert!(resumed.restore(stop, whole.coordinates()));
             assert_eq!(resumed.iteration(), stop);
-            let mut continued = Optimizer::new(problem.clone()).unwrap();
-            assert!(continued.restore(stop, whole.coordinates()));
-            assert_eq!(resumed.step().to_bits(), continued.step().to_bits());
-            let mut reference = Optimizer::new(problem.clone()).unwrap();
-            for _ in 0..=stop {
-                reference.step();
-            }
-            assert!(resumed.coordinates() == reference.coordinates(), "problem {number} after {stop}");
+            assert_eq!(resumed.step().to_bits(), whole.step().to_bits());
+            assert!(resumed.coordinates() == whole.coordinates(), "problem {number} after {stop}");
         }
     }
 }

@@ -1,88 +1,57 @@
 //! What the optimiser reaches. Seeds are fixed: these results are the same on every machine.
 
 use fsot::class;
+use fsot::metrics::neighbours::{Neighbours, neighbours};
+use fsot::metrics::{PrefixError, prefix_errors, quick, select};
 use fsot::optimize::{Domain, Problem, Quality, optimize};
 use fsot::points::Points;
-use fsot::random::stream;
+use std::ops::Range;
 
-/// The mean distance to the nearest neighbour, over that of a hexagonal lattice of the same density.
-fn nearest(points: &[[f64; 2]], torus: bool) -> f64 {
-    let apart = |a: f64, b: f64| {
-        let d = (a - b).abs();
-        if torus { d.min(1.0 - d) } else { d }
-    };
-    let mut sum = 0.0;
-    for (i, a) in points.iter().enumerate() {
-        let nearest = points
-            .iter()
-            .enumerate()
-            .filter(|(j, _)| *j != i)
-            .map(|(_, b)| apart(a[0], b[0]).powi(2) + apart(a[1], b[1]).powi(2))
-            .fold(f64::INFINITY, f64::min);
-        sum += nearest.sqrt();
-    }
-    sum / points.len() as f64 / (2.0 / 3.0f64.sqrt() / points.len() as f64).sqrt()
-}
-
-fn pairs(points: &Points) -> Vec<[f64; 2]> {
-    points.iter().map(|p| [f64::from(p[0]), f64::from(p[1])]).collect()
-}
-
-/// The mean spectral power below half the principal frequency; 1 for random points.
-fn low_power(points: &[[f64; 2]]) -> f64 {
-    let half = 0.5 * (2.0 / 3.0f64.sqrt() * points.len() as f64).sqrt();
-    let most = half as i32;
-    let (mut sum, mut count) = (0.0, 0.0);
-    for kx in 0..=most {
-        for ky in -most..=most {
-            let k = f64::from(kx).hypot(f64::from(ky));
-            if k == 0.0 || k >= half || (kx == 0 && ky < 0) {
-                continue;
-            }
-            let (mut re, mut im) = (0.0, 0.0);
-            for p in points {
-                let (sin, cos) = (std::f64::consts::TAU * (f64::from(kx) * p[0] + f64::from(ky) * p[1])).sin_cos();
-                re += cos;
-                im += sin;
-            }
-            sum += (re * re + im * im) / points.len() as f64;
-            count += 1.0;
-        }
-    }
-    sum / count
+/// Of the points of these numbers.
+fn nearest(points: &Points, range: Range<usize>) -> Neighbours {
+    neighbours(&select(points, |i| range.contains(&i))).unwrap()
 }
 
 #[test]
 fn a_thousand_points() {
     let points = optimize(Problem { seed: 1, ..Problem::new(1024, 2) }).unwrap();
-    let nn = nearest(&pairs(&points), false);
+    let report = quick(&points).unwrap();
+    let (nn, low) = (report.neighbours.unwrap().mean, report.spectra[0].summary.low);
     assert!(nn > 0.85, "{nn}");
-    let low = low_power(&pairs(&points));
     assert!(low < 0.008, "{low}");
 }
 
+/// Walls leave no trace: without the torus the smallest distance, across them, is .65.
 #[test]
 fn a_thousand_points_on_a_torus() {
     let points = optimize(Problem { seed: 1, domain: Domain::Toroidal, ..Problem::new(1024, 2) }).unwrap();
-    let nn = nearest(&pairs(&points), true);
-    assert!(nn > 0.85, "{nn}");
-    // Shifted, the spectrum stays as it is, and so do distances; walls leave no trace.
-    let shifted: Vec<[f64; 2]> = pairs(&points).iter().map(|p| [(p[0] + 0.37) % 1.0, (p[1] + 0.81) % 1.0]).collect();
-    assert!(nearest(&shifted, false) > 0.84);
+    let nn = neighbours(&points).unwrap();
+    assert!(nn.mean_toroidal > 0.85 && nn.min_toroidal > 0.72, "{nn:?}");
 }
 
 #[test]
 fn two_colors() {
     let problem = Problem { classes: class::two_colors(2), seed: 1, ..Problem::new(2048, 2) };
     let points = optimize(problem).unwrap();
-    let report = fsot::metrics::quick(&points).unwrap();
-    let all = pairs(&points);
-    for color in [&all[..1024], &all[1024..]] {
-        let nn = nearest(color, false);
+    for color in [0..1024, 1024..2048] {
+        let nn = nearest(&points, color).mean;
         assert!(nn > 0.78, "{nn}");
     }
-    let low = low_power(&all);
-    assert!(low < 0.014 && report.spectra[0].summary.low <= 0.014, "{low}, {:?}", report.spectra);
+    let low = quick(&points).unwrap().spectra[0].summary.low;
+    assert!(low < 0.014, "{low}");
+}
+
+/// Points of one class, cut in two, have .67 at most in one of the parts.
+#[test]
+fn a_ramp_is_even_on_both_sides_of_any_index() {
+    let problem = Problem { classes: class::ramp(2), seed: 1, ..Problem::new(1024, 2) };
+    let points = optimize(problem).unwrap();
+    for split in [128, 256, 512, 768, 896] {
+        let nn = [0..split, split..1024].map(|range| nearest(&points, range).mean);
+        assert!(nn.iter().all(|nn| *nn > 0.72), "{split}: {nn:?}");
+    }
+    let all = nearest(&points, 0..1024).mean;
+    assert!(all > 0.7, "{all}");
 }
 
 /// Half a minute of one core; the next one, two minutes.
@@ -102,59 +71,55 @@ fn four_thousand_points_of_high_quality() {
 #[ignore = "long: run by cargo xtask tiles --check"]
 fn a_quarter_of_a_million_points() {
     let points = optimize(Problem { seed: 1, ..Problem::new(262_144, 2) }).unwrap();
-    let nn = fsot::metrics::neighbours::neighbours(&points).unwrap().mean;
+    let nn = neighbours(&points).unwrap().mean;
     println!("nearest neighbour {nn}");
     assert!(nn >= 0.85, "{nn}");
+}
+
+/// Squared errors of functions of one coordinate, steps and bumps: .05 and .13 of those of five times as many steps.
+#[test]
+fn axis_priority_gains_more_than_a_longer_run() {
+    let errors = |axis_priority, quality| {
+        let points = optimize(Problem { axis_priority, quality, seed: 1, ..Problem::new(256, 2) }).unwrap();
+        let axes = [0, 1].map(|axis| Points::new(1, points.iter().map(|point| point[axis]).collect()));
+        prefix_errors(&axes, &[256], 256).unwrap()[0]
+    };
+    let (short, long) = (errors(0.3, Quality::Draft), errors(0.0, Quality::Standard));
+    assert!(short.half_spaces_relative < 0.1 * long.half_spaces_relative, "{short:?} {long:?}");
+    assert!(short.gaussians_relative < 0.2 * long.gaussians_relative, "{short:?} {long:?}");
 }
 
 #[test]
 fn windows_bring_points_into_order() {
     let quality = Quality::Iterations(120);
     let points = optimize(Problem { quality, seed: 1, ..Problem::new(20_000, 2) }).unwrap();
-    // One in ten, against all, for the time it takes.
-    let all = pairs(&points);
-    let mut sum = 0.0;
-    for a in all.iter().step_by(10) {
-        let squared = |b: &[f64; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
-        sum += all.iter().map(squared).filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min).sqrt();
-    }
-    let nn = sum / 2000.0 / (2.0 / 3.0f64.sqrt() / 20_000.0).sqrt();
+    let nn = neighbours(&points).unwrap().mean;
     assert!(nn > 0.8, "{nn}");
 }
 
-/// Integration error of the first points, averaged over sets and Gaussians; [`errors`] of every prefix length asked
-/// for.
-fn errors(levels: usize, points: usize, prefixes: &[usize], sets: u64, integrands: u64) -> Vec<f64> {
-    let mut sums = vec![0.0; prefixes.len()];
-    for set in 0..sets {
-        let classes = class::progressive(2, levels, points);
-        let optimised = optimize(Problem { classes, seed: set, ..Problem::new(points, 2) }).unwrap();
-        for integrand in 0..integrands {
-            let rng = &mut stream(17, integrand, 0);
-            let (cx, cy, sigma) = (rng.uniform_f64(), rng.uniform_f64(), 0.1 + 0.2 * rng.uniform_f64());
-            let f = |x: f64, y: f64| (-((x - cx).powi(2) + (y - cy).powi(2)) / (2.0 * sigma * sigma)).exp();
-            const GRID: usize = 200;
-            let at = |i: usize| (i as f64 + 0.5) / GRID as f64;
-            let exact = (0..GRID * GRID).map(|i| f(at(i % GRID), at(i / GRID))).sum::<f64>() / (GRID * GRID) as f64;
-            for (sum, &prefix) in sums.iter_mut().zip(prefixes) {
-                let mean =
-                    optimised.iter().take(prefix).map(|p| f(p[0].into(), p[1].into())).sum::<f64>() / prefix as f64;
-                *sum += (mean - exact).powi(2);
-            }
-        }
-    }
-    sums.iter().map(|sum| (sum / (sets * integrands) as f64).sqrt()).collect()
+/// The errors of the first 16, 32, ... 256 points of sets with so many levels.
+fn errors(levels: usize, sets: u64) -> Vec<PrefixError> {
+    let classes = class::progressive(2, levels, 256);
+    let set = |seed| optimize(Problem { classes: classes.clone(), seed, ..Problem::new(256, 2) }).unwrap();
+    prefix_errors(&(0..sets).map(set).collect::<Vec<Points>>(), &[16, 32, 64, 128, 256], 256).unwrap()
 }
 
+/// Squared errors, relative to those of as many random points: at a level, a fraction of those at half and at twice as
+/// many. Without levels the first three fractions are .78 and more.
 #[test]
 fn errors_dip_at_every_level() {
-    // 4 levels of 256 points: 4, 16, 64, 256. Between two levels the error is that of neither.
-    let ends = class::progressive_prefixes(4, 256);
-    assert_eq!(ends, [4, 16, 64, 256]);
-    let errors = errors(4, 256, &[4, 16, 32, 64, 128, 256], 8, 20);
-    // At a level, less than at half and at twice as many points, scaled as for random points.
-    let scaled: Vec<f64> =
-        errors.iter().zip([4.0f64, 16.0, 32.0, 64.0, 128.0, 256.0]).map(|(e, n)| e * n.sqrt()).collect();
-    assert!(scaled[1] < 0.6 * scaled[2] && scaled[3] < 0.6 * scaled[2], "{scaled:?}");
-    assert!(scaled[3] < 0.6 * scaled[4] && scaled[5] < 0.6 * scaled[4], "{scaled:?}");
+    assert_eq!(class::progressive_prefixes(4, 256), [4, 16, 64, 256]);
+    let few = errors(4, 8);
+    for (level, between) in [(0, 1), (2, 1), (2, 3), (4, 3)] {
+        let (level, between) = (&few[level], &few[between]);
+        assert!(level.half_spaces_relative < 0.3 * between.half_spaces_relative, "{level:?} {between:?}");
+        assert!(level.gaussians_relative < 0.06 * between.gaussians_relative, "{level:?} {between:?}");
+    }
+    // More levels make shallower dips: with one at every point there are none.
+    let all = errors(256, 2);
+    for (number, (few, all)) in few.iter().zip(&all).enumerate() {
+        let (few, all, factor) = if number % 2 == 0 { (few, all, 1.2) } else { (all, few, 2.0) };
+        assert!(all.half_spaces_relative > factor * few.half_spaces_relative, "{few:?} {all:?}");
+        assert!(all.gaussians_relative > 4.0 * few.gaussians_relative, "{few:?} {all:?}");
+    }
 }

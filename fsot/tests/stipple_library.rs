@@ -1,10 +1,9 @@
-//! Stippling through the library: inks, classes, tones, threads, animation.
+//! Stippling through the library: inks, classes, tones, animation.
 
 use fsot::Error;
 use fsot::class::ClassCoordinates;
 use fsot::optimize::{Quality, optimize};
 use fsot::picture::{Photo, blurred_psnr, rasterise};
-use fsot::points::Points;
 use fsot::stipple::{Animation, Options, Stipple, Windows};
 
 /// A ramp from black to white with a lighter disc on it.
@@ -102,21 +101,6 @@ fn points_stay_in_the_picture_and_one_point_is_enough() {
         let points = optimize(stipple.problem.clone()).unwrap();
         assert!(points.iter().all(|p| p[0] >= 0.0 && p[0] < 1.0 && p[1] >= 0.0 && p[1] <= 0.67), "{points:?}");
     }
-}
-
-#[test]
-fn the_same_bits_on_any_number_of_threads() {
-    let photo = colours();
-    let make = |threads: usize| -> Points {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let stipple = Stipple::new(&photo, &Options { cmyk: true, ..options(1500, 20) }).unwrap();
-            optimize(stipple.problem.clone()).unwrap()
-        })
-    };
-    let one = make(1);
-    assert_eq!(one, make(2));
-    assert_eq!(one, make(5));
 }
 
 #[test]
