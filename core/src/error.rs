@@ -4,13 +4,6 @@ use core::ffi::CStr;
 use core::fmt;
 
 /// Why a call was refused. A refused call leaves its outputs and its object as they were.
-///
-/// ```
-/// use noisefloor::Error;
-///
-/// let error: Box<dyn std::error::Error> = Error::Range.into();
-/// assert!(error.to_string().contains("outside its documented range"));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Error {

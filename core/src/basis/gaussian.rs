@@ -2,8 +2,8 @@
 
 use super::shape::{MAX_DIMS, MAX_TERMS};
 use crate::lanes::Lanes;
+use crate::matrix::set;
 use crate::real::Real;
-use crate::rows::set;
 use heapless::Vec;
 
 /// The centring and scaling of exp(-|x - c|^2 / (2 sigma^2)).

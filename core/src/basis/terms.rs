@@ -3,8 +3,8 @@
 use super::functions::{self, Family};
 use super::shape::{MAX_DIMS, MAX_ORDER, MAX_TERMS};
 use crate::lanes::{self, Lanes};
+use crate::matrix::at;
 use crate::real::Real;
-use crate::rows::at;
 use core::hint::black_box;
 use heapless::Vec;
 

@@ -16,8 +16,8 @@ use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
 use crate::error::{Error, ensure};
 use crate::lanes::Lanes;
+use crate::matrix::{first_mut, from, from_mut, halves_mut};
 use crate::real::Real;
-use crate::rows::{first_mut, from, from_mut, halves_mut};
 use core::num::NonZeroUsize;
 
 /// A streaming estimate of fixed size: everything but the sums themselves, a buffer of [`Accumulator::len`] numbers
@@ -207,7 +207,7 @@ impl<R: Real> Accumulator<R> {
         }
         let fold = folds::of_stream(self.samples, self.groups());
         self.layout.group_mut(groups, fold).add(p, f);
-        self.samples += 1;
+        self.samples = self.samples.saturating_add(1);
         if self.method == Method::Incremental {
             self.incremental.refit(self.samples, &self.config, self.shape, self.layout, groups, rest);
         }

@@ -78,7 +78,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
             *value -= offset;
         }
         self.sums_mut().add(p.as_flattened_mut(), &mut values);
-        self.samples += 1;
+        self.samples = self.samples.saturating_add(1);
         Ok(())
     }
 

@@ -6,8 +6,8 @@ use super::per_channel::PerChannel;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::error::{Error, ensure};
 use crate::lanes::{LANES, Lanes};
+use crate::matrix::{first, from, halves_mut, row_at};
 use crate::real::Real;
-use crate::rows::{first, from, halves_mut, row_at};
 
 /// Rec. 709 luminance of linear RGB.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];

@@ -3,7 +3,7 @@
 use super::shape::Shape;
 use crate::checksum::crc;
 use crate::error::{Error, ensure};
-use crate::rows::{first, from};
+use crate::matrix::{first, from};
 
 /// Bytes of the header.
 pub const HEADER_BYTES: usize = 128;

@@ -4,17 +4,11 @@
 //! corrected by fits to the others, so are the slots of a block: that of the block's own number.
 
 use super::super::config::Config;
-use super::call::Call;
+use super::Call;
 use super::groups::{Group, Groups, Place};
 use super::pixels::{Image, MAX_AXES};
-use super::products::{
-    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Sums, minus, only, plus, product, total, zip_four,
-};
+use super::products::*;
 use super::terms::Terms;
-use crate::arena::Arena;
-use crate::lanes::{self, LANES};
-use crate::matrix::{at, row_at, row_at_mut, rows, set};
-use crate::real::Real;
 use core::array::from_fn;
 
 /// The most numbers of a place.

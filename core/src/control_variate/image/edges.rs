@@ -6,21 +6,13 @@
 //! kept from 0 to the largest of them. What corrects is h's bilinear interpolant between 17 x 17 points of the two
 //! coordinates, whose integral the trapezoid rule gives: the correction's mean is 0 whatever was fitted.
 
+use super::Call;
 use super::batch::{Batch, MAX_FIXED};
-use super::call::Call;
 use super::fit::Fits;
 use super::groups::Place;
-use super::products::{
-    AT_ONCE, AT_ONCE_LANES, COLOURS, Colours, Eight, Four, NONE, Sums, add_products, combine, minus, only, plus,
-    plus_four, product, times,
-};
-use crate::arena::Arena;
+use super::products::*;
 use crate::basis::MAX_DIMS;
 use crate::control_variate::Config;
-use crate::lanes::{self, LANES, Lanes};
-use crate::linalg::ldlt;
-use crate::matrix::{at, copy, first_mut, from, from_mut, packed_len, row, row_at, row_at_mut, row_mut, set};
-use crate::real::Real;
 use core::f32::consts::{LN_2, LOG2_E};
 
 /// The fewest samples of a pixel that say whether it is cut by an edge.

@@ -1,10 +1,8 @@
 //! Groups: the pixels of one window and one surface, which share fits.
 
-use super::call::Call;
+use super::Call;
 use super::pixels::{Image, Rectangle};
-use crate::arena::Arena;
-use crate::lanes::LANES;
-use crate::matrix::{at, copy, first, from, from_mut, halves, halves_mut, part, row_at, row_at_mut};
+use super::products::*;
 use heapless::Vec;
 
 /// Windows that are worked on together hold at most so many pixels, or are eight.

@@ -2,12 +2,8 @@
 
 use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED};
-use super::products::{AT_ONCE, Eight, Four, NONE, combine, minus, only, product};
+use super::products::*;
 use super::terms::SINGULAR;
-use crate::lanes::{self, LANES};
-use crate::linalg::ldlt;
-use crate::matrix::{at, diagonal, from, halves, part, row_at, row_at_mut, rows};
-use crate::real::Real;
 use core::ops::Range;
 
 /// Sums of [`Seen::correct`] of each value and fixed column.

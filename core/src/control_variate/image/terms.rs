@@ -2,12 +2,9 @@
 
 use super::super::config::Config;
 use super::super::ridge;
-use super::call::Call;
-use super::products::{Eight, Four, times};
+use super::Call;
+use super::products::*;
 use crate::basis::{Basis, MAX_ORDER};
-use crate::lanes;
-use crate::matrix::{at, first, halves_mut, rows_mut};
-use crate::real::Real;
 use heapless::Vec;
 
 /// The most candidates: one for each degree, one with every slice's own functions, one with all columns.
