@@ -30,11 +30,6 @@ pub enum Error {
 }
 
 impl Error {
-    /// Its number in C, an `nf_status`.
-    pub const fn status(self) -> i32 {
-        self as i32
-    }
-
     /// A static sentence that says what was wrong.
     pub const fn message(self) -> &'static str {
         match self.words().to_str() {
@@ -62,9 +57,10 @@ impl Error {
     }
 }
 
+/// Its number in C, an `nf_status`.
 impl From<Error> for i32 {
     fn from(error: Error) -> i32 {
-        error.status()
+        error as i32
     }
 }
 

@@ -111,6 +111,12 @@ pub(crate) fn split_at<T>(vector: &mut [T], j: usize) -> Option<(&mut [T], &mut 
     vector.get_mut(..=j)?.split_last_mut().map(|(last, before)| (before, last))
 }
 
+/// Whether as many entries as both have are equal. Of `==` compilers may make a call of bcmp, which a freestanding
+/// target need not have.
+pub(crate) fn is_same<T: Copy + PartialEq>(a: &[T], b: &[T]) -> bool {
+    a.iter().zip(b).fold(true, |is_same, (a, b)| is_same & (a == b))
+}
+
 /// Copies as many entries as both have.
 pub(crate) fn copy<T: Copy>(into: &mut [T], from: &[T]) {
     for (into, &from) in into.iter_mut().zip(from) {

@@ -3,7 +3,7 @@
 use super::shape::Shape;
 use crate::checksum::crc;
 use crate::error::{Error, ensure};
-use crate::matrix::{first, from};
+use crate::matrix::{first, from, is_same};
 
 /// Bytes of the header.
 pub const HEADER_BYTES: usize = 128;
@@ -86,15 +86,11 @@ impl Header {
     /// # Errors
     /// As for [`Tile::from_bytes`](super::Tile::from_bytes).
     pub fn decode(bytes: &[u8]) -> Result<(Header, &[u8]), Error> {
-        let is_ours = bytes.iter().zip(&MAGIC).all(|(byte, magic)| byte == magic) && !bytes.is_empty();
-        ensure(is_ours, Error::Foreign)?;
+        ensure(is_same(bytes, &MAGIC) && !bytes.is_empty(), Error::Foreign)?;
         let (head, payload) = bytes.split_first_chunk::<HEADER_BYTES>().ok_or(Error::Length)?;
         let header = Header::parse(head)?;
-        // The header says nothing but its fields: all of its bytes are those it would be written with. Compared one by
-        // one, as `==` may call bcmp, which not every C library has.
-        let written = header.encode(payload)?;
-        let difference = head.iter().zip(&written).fold(0, |all, (a, b)| all | (a ^ b));
-        ensure(difference == 0, Error::Corrupt)?;
+        // The header says nothing but its fields: all of its bytes are those it would be written with.
+        ensure(is_same(head, &header.encode(payload)?), Error::Corrupt)?;
         Ok((header, payload))
     }
 

@@ -1,6 +1,6 @@
 //! Which columns a shared fit has, and which of them each candidate uses.
 
-use super::super::config::Config;
+use super::super::config::{Config, Estimator};
 use super::super::ridge;
 use super::Call;
 use super::products::*;
@@ -59,7 +59,9 @@ impl Terms {
         let (config, shape, axes) = (call.config, &call.shape, call.windows.axes());
         let (functions, fixed) = (shape.columns(), 1 + axes);
         let (slices, copies) = shape.slices_apart();
-        if call.is_known_alone() || functions + slices == 0 {
+        // What is known corrects alone: a fit to values that depend on it has seen its own pixel.
+        let is_known_alone = call.image.has_known() && config.estimator == Estimator::LeaveOneOut;
+        if is_known_alone || functions + slices == 0 {
             return Self { axes, has_edges, ..Self::default() };
         }
         let samples = pixels.saturating_mul(call.n);
