@@ -38,7 +38,7 @@ const LEAST_VARIANCE: f32 = 1e-3;
 /// Points along a coordinate, and cells between them.
 const POINTS: usize = CELLS + 1;
 const CELLS: usize = 16;
-const SQRT_3: f32 = 1.732_050_8;
+const SQRT_3: f32 = super::batch::SQRT_3 as f32;
 const SQRT_5: f32 = 2.236_068;
 
 impl Call<'_> {

@@ -5,7 +5,7 @@ use crate::basis::MAX_DIMS;
 pub(super) use crate::lanes::{self, LANES, Lanes};
 pub(super) use crate::linalg::ldlt;
 pub(super) use crate::matrix::*;
-pub(super) use crate::real::{Real, saturate};
+pub(super) use crate::real::{Real, rounding, saturate};
 
 /// A number for each of eight groups.
 pub(super) type Eight = Lanes<f32>;

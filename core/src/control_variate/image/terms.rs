@@ -20,8 +20,6 @@ const MOVING_PENALTY: f32 = 8.0;
 
 /// Ridge strength per sample if the caller gives none.
 const STRENGTH: f64 = 0.003;
-/// The least that 1 less a sample's leverage is taken for.
-pub(super) const SINGULAR: f32 = 64.0 * f32::EPSILON;
 
 /// What penalties of a fit to so many samples are multiplied by.
 pub(super) fn scale(config: &Config, samples: &Eight) -> Eight {
