@@ -30,15 +30,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// A static sentence that says what was wrong.
-    pub const fn message(self) -> &'static str {
-        match self.words().to_str() {
-            Ok(words) => words,
-            Err(_) => "",
-        }
-    }
-
-    /// The same, with the NUL that C needs.
+    /// A sentence that says what was wrong, with the NUL that C needs.
     pub const fn words(self) -> &'static CStr {
         match self {
             Error::Range => {
@@ -78,7 +70,7 @@ pub(crate) fn check_part(value: f32) -> Result<(), Error> {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.message())
+        f.write_str(self.words().to_str().unwrap_or_default())
     }
 }
 
