@@ -32,7 +32,7 @@ use heapless::Vec;
 use terms::Term;
 
 /// A set of centred functions of unit variance on `[0, 1]^dims`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Basis {
     family: Family,
     shape: Shape,
@@ -103,11 +103,6 @@ impl Basis {
             (column - shared - slices).checked_rem(copies).unwrap_or(0)
         };
         self.terms.get(term).map_or(1, Term::degree)
-    }
-
-    /// Whether another basis has the same functions in the same order.
-    pub(crate) fn is_same(&self, other: &Self) -> bool {
-        self.family == other.family && self.shape == other.shape
     }
 
     /// Evaluates every function at `L` points: `x` has a group of lanes for each coordinate, `out` gets one for each

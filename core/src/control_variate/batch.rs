@@ -5,12 +5,12 @@ use super::config::{Config, Estimate};
 use super::design::{self, Design};
 use super::fit::descent;
 use super::fitter;
-use super::folds::Fold;
+use super::folds::Subset;
 use super::per_channel::PerChannel;
 use super::plan::{Method, Plan};
 use super::result::{Outcome, Summary};
 use super::ridge::MAX_FITS;
-use super::samples::{Reader, Samples, Subset};
+use super::samples::{Reader, Samples};
 use super::sums;
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -95,7 +95,7 @@ pub fn estimate_inlined<R: Real>(
     let plan = Plan::new::<R>(config, shape.columns(), reader.len())?;
     reader.check()?;
     let mut arena = Arena::new(workspace, size(config, &plan, reader.len()))?;
-    let design = Design::load(&reader, &basis, plan.columns, Subset::All, true, &mut arena).ok_or(Error::NoSamples)?;
+    let design = Design::load(&reader, &basis, plan.columns, Subset::ALL, true, &mut arena).ok_or(Error::NoSamples)?;
     let summary = Summary::of(&design, &reader);
     let outcome = match plan.method {
         _ if design.n == 1 => Outcome::default(),
@@ -147,11 +147,11 @@ fn k_fold<R: Real>(
     let [mut totals, mut squares, mut inflations] = [PerChannel::default(); 3];
     let coefficients = arena.take(whole.columns * channels);
     for index in 0..config.fold_count().get() {
-        let fold = Fold::new(index, config.fold_count(), reader.len());
+        let fold = Subset::fold(index, config.fold_count(), reader.len());
         let mut arena = arena.scratch();
         let mut load = |subset, centre| Design::load(reader, basis, whole.columns, subset, centre, &mut arena);
-        let Some(held_out) = load(Subset::Fold(fold), false) else { continue };
-        let train = load(Subset::Complement(fold), true);
+        let Some(held_out) = load(fold, false) else { continue };
+        let train = load(fold.others(), true);
         coefficients.fill(R::ZERO);
         let mut inflation = PerChannel::all(R::ONE);
         if let Some(train) = train.filter(|train| train.n > 1) {

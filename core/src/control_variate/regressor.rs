@@ -75,7 +75,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         if self.samples == 0 {
             self.offset = PerChannel::from_row(&values);
         }
-        for (value, &offset) in values.iter_mut().zip(&*self.offset) {
+        for (value, &offset) in values.iter_mut().zip(&self.offset.0) {
             *value -= offset;
         }
         self.sums_mut().add(p.as_flattened_mut(), &mut values);
@@ -114,7 +114,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     /// # Errors
     /// [`Error::Mismatch`] if the bases differ.
     pub fn merge(&mut self, other: &Self) -> Result<(), Error> {
-        ensure(self.basis.is_same(&other.basis), Error::Mismatch)?;
+        ensure(self.basis == other.basis, Error::Mismatch)?;
         if self.samples == 0 {
             self.offset = other.offset;
         }
