@@ -4,7 +4,7 @@
 //! corrected by fits to the others, so are the slots of a block: that of the block's own number.
 
 use super::super::config::Config;
-use super::Call;
+use super::call::Call;
 use super::groups::{Group, Groups, Place};
 use super::pixels::{Image, MAX_AXES};
 use super::products::*;

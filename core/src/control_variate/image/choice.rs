@@ -1,8 +1,8 @@
 //! How far each fit of a group is trusted.
 
 use super::super::trust;
-use super::Call;
 use super::batch::{Batch, MAX_FIXED};
+use super::call::Call;
 use super::fit::Fits;
 use super::products::*;
 use super::terms::Terms;

@@ -6,8 +6,8 @@
 //! kept from 0 to the largest of them. What corrects is h's bilinear interpolant between 17 x 17 points of the two
 //! coordinates, whose integral the trapezoid rule gives: the correction's mean is 0 whatever was fitted.
 
-use super::Call;
 use super::batch::{Batch, MAX_FIXED};
+use super::call::Call;
 use super::fit::Fits;
 use super::groups::Place;
 use super::products::*;

@@ -1,6 +1,6 @@
 //! Groups: the pixels of one window and one surface, which share fits.
 
-use super::Call;
+use super::call::Call;
 use super::pixels::{Image, Rectangle};
 use super::products::*;
 use heapless::Vec;

@@ -28,6 +28,7 @@
 
 mod batch;
 mod bright;
+mod call;
 mod choice;
 mod edges;
 mod fit;
@@ -48,20 +49,20 @@ mod terms;
 
 pub use pixels::{Image, Rectangle};
 
-use super::config::{Color, Config, Estimate, Estimator, NonFinite, Ridge, Solver};
+use super::config::{Color, Config, Estimate, Estimator, NonFinite, Solver};
 use super::samples::{Reader, Samples};
 use crate::arena::Arena;
-use crate::basis::{Basis, Shape};
+use crate::basis::Basis;
 use crate::error::{Error, ensure};
 use crate::lanes::LANES;
 use crate::processor::{Portable, Processor};
 use batch::Batch;
+use call::Call;
 use choice::{Choices, Room, Shares};
 use edges::Edges;
 use fit::Fits;
 use groups::Group;
 use load::Loading;
-use pixels::Windows;
 use sums::Band;
 use terms::Terms;
 
@@ -142,54 +143,6 @@ pub fn estimate_image_by<P: Processor>(
     let mut arena = Arena::new(workspace, call.workspace_len())?;
     call.run::<P>(&mut arena, out);
     Ok(())
-}
-
-/// What all groups of a call have in common.
-#[derive(Clone, Copy)]
-struct Call<'a> {
-    config: &'a Config,
-    image: &'a Image<'a>,
-    windows: Windows,
-    /// Pixels that are given, in all frames.
-    pixels: usize,
-    shape: Shape,
-    /// Samples of a pixel.
-    n: usize,
-    basis: &'a Basis,
-    reader: Reader<'a>,
-}
-
-impl Call<'_> {
-    /// Whether there is one candidate, all of whose columns are used.
-    fn is_single_fit(&self) -> bool {
-        self.config.estimator == Estimator::LeaveOneOut || matches!(self.config.ridge, Ridge::Fixed(_))
-    }
-
-    /// Values of a sample that fits are made to: of each channel f and, with something known, f less its part of that.
-    fn values(&self) -> usize {
-        if self.image.has_known() { 2 * self.config.channels } else { self.config.channels }
-    }
-
-    /// Whether groups without an edge of a shadow are corrected: not by edges alone.
-    fn fits_without_edges(&self) -> bool {
-        self.image.has_known() || self.shape.columns() + self.shape.slices_apart().0 > 0
-    }
-
-    /// In how many turns pixels are chosen for: in two, halves of them choose for each other.
-    fn turns(&self) -> usize {
-        if self.config.estimator == Estimator::KFold && !self.is_single_fit() { 2 } else { 1 }
-    }
-
-    /// Whether colours, or halves of them, are corrected by fits to others.
-    fn has_colours(&self) -> bool {
-        self.n > 1 || self.turns() > 1
-    }
-
-    /// Whether the standard error is that of the group's estimates, instead of the pixel's plain mean times the root of
-    /// the gain: one sample has none, and stratified samples a smaller one than they seem to.
-    fn error_is_the_groups(&self) -> bool {
-        self.n == 1 || self.config.stratified
-    }
 }
 
 impl<'a> Call<'a> {

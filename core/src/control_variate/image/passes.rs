@@ -1,9 +1,9 @@
 //! Windows by rows, which fits are made to their groups, and what becomes of them.
 
 use super::super::config::{Config, Estimate};
-use super::Call;
 use super::batch::Batch;
 use super::bright;
+use super::call::Call;
 use super::choice::{Choices, Shares, Spreads};
 use super::edges::Edges;
 use super::fit::Fits;

@@ -1,7 +1,7 @@
 //! Reading samples, as fits see them.
 
-use super::Call;
 use super::batch::Batch;
+use super::call::Call;
 use super::products::*;
 use core::ops::Range;
 

@@ -1,8 +1,8 @@
 //! The work of a batch, in functions that are compiled for a processor, each by itself.
 
 use super::super::config::Estimate;
-use super::Call;
 use super::batch::Batch;
+use super::call::Call;
 use super::choice::{Choices, Shares, Spreads};
 use super::edges::Edges;
 use super::fit::Fits;

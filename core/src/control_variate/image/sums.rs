@@ -2,7 +2,7 @@
 
 use super::super::config::{Config, Estimate};
 use super::super::result::{mean_divisor, saturate, standard_error};
-use super::Call;
+use super::call::Call;
 use super::groups::{Groups, Place};
 use super::products::*;
 

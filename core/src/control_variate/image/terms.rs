@@ -2,7 +2,7 @@
 
 use super::super::config::{Config, Estimator};
 use super::super::ridge;
-use super::Call;
+use super::call::Call;
 use super::products::*;
 use crate::basis::{Basis, MAX_ORDER};
 use heapless::Vec;
