@@ -69,16 +69,16 @@ pub extern "C" fn nf_status_message(status: nf_status) -> *const c_char {
 }
 
 const _: () = assert!(
-    Error::Range.status() == NF_ERR_RANGE
-        && Error::NotFinite.status() == NF_ERR_NOT_FINITE
-        && Error::Memory.status() == NF_ERR_MEMORY
-        && Error::NoSamples.status() == NF_ERR_NO_SAMPLES
-        && Error::Unsupported.status() == NF_ERR_UNSUPPORTED
-        && Error::Mismatch.status() == NF_ERR_MISMATCH
-        && Error::Foreign.status() == NF_ERR_FOREIGN
-        && Error::Version.status() == NF_ERR_VERSION
-        && Error::Length.status() == NF_ERR_LENGTH
-        && Error::Corrupt.status() == NF_ERR_CORRUPT
+    Error::Range as nf_status == NF_ERR_RANGE
+        && Error::NotFinite as nf_status == NF_ERR_NOT_FINITE
+        && Error::Memory as nf_status == NF_ERR_MEMORY
+        && Error::NoSamples as nf_status == NF_ERR_NO_SAMPLES
+        && Error::Unsupported as nf_status == NF_ERR_UNSUPPORTED
+        && Error::Mismatch as nf_status == NF_ERR_MISMATCH
+        && Error::Foreign as nf_status == NF_ERR_FOREIGN
+        && Error::Version as nf_status == NF_ERR_VERSION
+        && Error::Length as nf_status == NF_ERR_LENGTH
+        && Error::Corrupt as nf_status == NF_ERR_CORRUPT
 );
 
 /// Refuses what is not so.

@@ -4,13 +4,6 @@ use core::ffi::CStr;
 use core::fmt;
 
 /// Why a call was refused. A refused call leaves its outputs and its object as they were.
-///
-/// ```
-/// use noisefloor::Error;
-///
-/// let error: Box<dyn std::error::Error> = Error::Range.into();
-/// assert!(error.to_string().contains("outside its documented range"));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Error {
@@ -37,20 +30,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// Its number in C, an `nf_status`.
-    pub const fn status(self) -> i32 {
-        self as i32
-    }
-
-    /// A static sentence that says what was wrong.
-    pub const fn message(self) -> &'static str {
-        match self.words().to_str() {
-            Ok(words) => words,
-            Err(_) => "",
-        }
-    }
-
-    /// The same, with the NUL that C needs.
+    /// A sentence that says what was wrong, with the NUL that C needs.
     pub const fn words(self) -> &'static CStr {
         match self {
             Error::Range => {
@@ -69,9 +49,10 @@ impl Error {
     }
 }
 
+/// Its number in C, an `nf_status`.
 impl From<Error> for i32 {
     fn from(error: Error) -> i32 {
-        error.status()
+        error as i32
     }
 }
 
@@ -89,7 +70,7 @@ pub(crate) fn check_part(value: f32) -> Result<(), Error> {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.message())
+        f.write_str(self.words().to_str().unwrap_or_default())
     }
 }
 

@@ -42,22 +42,16 @@
 //! # Ok::<(), noisefloor::Error>(())
 //! ```
 
-#[cfg(feature = "control-variate")]
 mod arena;
 #[cfg(feature = "control-variate")]
 pub mod basis;
-#[cfg(any(feature = "tile", feature = "minibatch"))]
 mod checksum;
 #[cfg(feature = "control-variate")]
 pub mod control_variate;
 pub mod error;
-#[cfg(any(feature = "sampler", feature = "tile"))]
 mod hash;
-#[cfg(any(feature = "control-variate", feature = "mis"))]
 mod lanes;
-#[cfg(any(feature = "control-variate", feature = "mis"))]
 mod linalg;
-#[cfg(any(feature = "control-variate", feature = "mis"))]
 mod matrix;
 #[cfg(feature = "minibatch")]
 pub mod minibatch;
@@ -67,12 +61,10 @@ pub mod mis;
 mod pixels;
 #[cfg(any(feature = "control-variate", feature = "minibatch"))]
 pub mod processor;
-#[cfg(any(feature = "control-variate", feature = "mis"))]
 pub mod real;
 #[cfg(feature = "control-variate")]
 pub mod recommend;
 pub mod rng;
-mod rows;
 #[cfg(feature = "sampler")]
 pub mod sampler;
 #[cfg(feature = "tile")]

@@ -1,7 +1,7 @@
 //! Many pixels and samples at once, for renderers that work on whole images.
 
 use crate::error::Error;
-use crate::rows::from_mut;
+use crate::matrix::from_mut;
 use core::borrow::Borrow;
 
 /// A sampler of which [`fill`] draws.

@@ -171,3 +171,25 @@ fn too_many_samples() {
         assert_eq!(control_variate::workspace_len::<f64>(&config, many), Err(Error::Range));
     }
 }
+
+/// A count beyond 64 bits stays at the largest, also when one more sample is added.
+#[test]
+fn counts_end_at_the_largest() {
+    let sample = Samples::new(&[0.5], &[1.0]);
+    for config in streaming_configs(1, 1) {
+        let mut doubled = accumulator::<f64>(&config);
+        doubled.add(sample).unwrap();
+        for _ in 0..64 {
+            doubled.merge(&doubled.clone()).unwrap();
+        }
+        doubled.add(sample).unwrap();
+        assert_eq!((doubled.samples(), finish(&doubled).unwrap().mean[0]), (u64::MAX, 1.0), "{config:?}");
+    }
+    let mut doubled = Regressor::<1, 2, 1>::new(Family::Legendre, 1).unwrap();
+    doubled.add(&[0.5], &[1.0]).unwrap();
+    for _ in 0..64 {
+        doubled.merge(&doubled.clone()).unwrap();
+    }
+    doubled.add(&[0.5], &[1.0]).unwrap();
+    assert_eq!((doubled.samples(), doubled.estimate(0.01).unwrap().mean[0]), (u64::MAX, 1.0));
+}

@@ -133,11 +133,11 @@ fn each_error() {
         assert!(matches!(refused, Error::Corrupt | Error::Length), "byte {at}: {refused:?}");
     }
     for error in [Error::Foreign, Error::Version, Error::Length, Error::Corrupt] {
-        assert!(!error.message().is_empty());
+        assert!(!error.to_string().is_empty());
     }
     let error: Box<dyn std::error::Error> = Error::Range.into();
     assert!(error.to_string().contains("outside its documented range"));
-    assert_eq!(Error::NotFinite.message(), "an input value is NaN or infinite");
+    assert_eq!(Error::NotFinite.to_string(), "an input value is NaN or infinite");
 }
 
 #[test]

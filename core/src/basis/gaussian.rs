@@ -2,12 +2,12 @@
 
 use super::shape::{MAX_DIMS, MAX_TERMS};
 use crate::lanes::Lanes;
+use crate::matrix::set;
 use crate::real::Real;
-use crate::rows::set;
 use heapless::Vec;
 
 /// The centring and scaling of exp(-|x - c|^2 / (2 sigma^2)).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Moments {
     /// The integral over the cube.
     mean: f64,
@@ -16,7 +16,7 @@ struct Moments {
 }
 
 /// The mixture's components; the regression finds their weights.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Gaussians {
     /// -1 / (2 sigma^2)
     exponent: f64,

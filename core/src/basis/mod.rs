@@ -24,7 +24,6 @@ pub use functions::Family;
 pub(crate) use shape::Shape;
 pub use shape::{MAX_DIMS, MAX_ORDER, MAX_TERMS};
 
-use crate::error::Error;
 use crate::lanes::Lanes;
 use crate::matrix::{at, halves_mut, rows_mut, set};
 use crate::real::Real;
@@ -33,14 +32,8 @@ use heapless::Vec;
 use terms::Term;
 
 /// A set of centred functions of unit variance on `[0, 1]^dims`.
-///
-/// ```
-/// use noisefloor::basis::{Basis, Family};
-/// assert_eq!(Basis::new(Family::Legendre, 2, 3, 0)?.columns(), 9); // ten terms less the constant
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
-#[derive(Clone, Debug)]
-pub struct Basis {
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Basis {
     family: Family,
     shape: Shape,
     terms: Vec<Term, MAX_TERMS>,
@@ -48,16 +41,6 @@ pub struct Basis {
 }
 
 impl Basis {
-    /// A basis over `dims` (1 to 16) coordinates of total degree at most `order` (0 to 7).
-    ///
-    /// # Errors
-    /// [`Error::Range`] if a number is out of range or the terms, constant included, would exceed [`MAX_TERMS`].
-    pub fn new(family: Family, dims: usize, order: usize, slices: usize) -> Result<Self, Error> {
-        let mut basis = Self::empty();
-        basis.set(family, Shape::new(dims, order, slices, MAX_TERMS)?);
-        Ok(basis)
-    }
-
     /// A basis of no functions, to be set.
     pub(crate) fn empty() -> Self {
         Self { family: Family::Legendre, shape: Shape::default(), terms: Vec::new(), gaussians: None }
@@ -75,7 +58,7 @@ impl Basis {
 
     /// How many functions there are; the constant is not one of them.
     #[inline]
-    pub fn columns(&self) -> usize {
+    pub(crate) fn columns(&self) -> usize {
         self.shape.columns()
     }
 
@@ -120,11 +103,6 @@ impl Basis {
             (column - shared - slices).checked_rem(copies).unwrap_or(0)
         };
         self.terms.get(term).map_or(1, Term::degree)
-    }
-
-    /// Whether another basis has the same functions in the same order.
-    pub(crate) fn is_same(&self, other: &Self) -> bool {
-        self.family == other.family && self.shape == other.shape
     }
 
     /// Evaluates every function at `L` points: `x` has a group of lanes for each coordinate, `out` gets one for each

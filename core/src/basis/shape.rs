@@ -29,7 +29,7 @@ impl Shape {
     /// Of at most `room` terms, constant included.
     ///
     /// # Errors
-    /// As for [`Basis::new`](super::Basis::new).
+    /// [`Error::Range`] for other than 1 to 16 `dims` or an `order` beyond 7, and if there is no room.
     pub(crate) fn new(dims: usize, order: usize, slices: usize, room: usize) -> Result<Self, Error> {
         let in_range = (1..=MAX_DIMS).contains(&dims) && order <= MAX_ORDER && slices < MAX_TERMS;
         ensure(in_range, Error::Range)?;

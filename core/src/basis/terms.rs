@@ -3,8 +3,8 @@
 use super::functions::{self, Family};
 use super::shape::{MAX_DIMS, MAX_ORDER, MAX_TERMS};
 use crate::lanes::{self, Lanes};
+use crate::matrix::at;
 use crate::real::Real;
-use crate::rows::at;
 use core::hint::black_box;
 use heapless::Vec;
 
@@ -13,7 +13,7 @@ const CONSTANT: u8 = u8::MAX;
 
 /// One function: either a one-dimensional one, from the two lower degrees of the same coordinate, or the product of
 /// two earlier columns.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Term {
     /// Which column the value goes to.
     column: u8,

@@ -4,20 +4,20 @@ use super::config::{Color, Config, Estimate, Ridge};
 use super::cross_fit::{self, Groups};
 use super::design::Units;
 use super::fit::{Penalty, descent, givens, normal};
-use super::folds;
+use super::folds::{self, Subset};
 use super::incremental;
 use super::per_channel::PerChannel;
 use super::plan::{self, Method, NARROW_CAPACITY};
 use super::result::{Outcome, Summary};
 use super::ridge;
-use super::samples::{Reader, Samples, Subset};
+use super::samples::{Reader, Samples};
 use super::sums::{Change, Form, Layout};
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
 use crate::error::{Error, ensure};
 use crate::lanes::Lanes;
+use crate::matrix::{first_mut, from, from_mut, halves_mut};
 use crate::real::Real;
-use crate::rows::{first_mut, from, from_mut, halves_mut};
 use core::num::NonZeroUsize;
 
 /// A streaming estimate of fixed size: everything but the sums themselves, a buffer of [`Accumulator::len`] numbers
@@ -97,13 +97,9 @@ impl<R: Real> Accumulator<R> {
     }
 
     /// Numbers of the whole buffer.
+    #[allow(clippy::len_without_is_empty, reason = "an accumulator has at least the sums of a constant")]
     pub fn len(&self) -> usize {
         self.sums_len() + if self.method == Method::Incremental { incremental::len(self.layout) } else { 0 }
-    }
-
-    /// Never: an accumulator has at least the sums of a constant.
-    pub fn is_empty(&self) -> bool {
-        false
     }
 
     /// Numbers of workspace that an estimate takes.
@@ -177,7 +173,7 @@ impl<R: Real> Accumulator<R> {
         p[0] = [R::ONE];
         let mut x = [[R::ZERO; 1]; MAX_DIMS];
         let mut h = [[R::ZERO; 1]; Config::MAX_CONTROLS];
-        reader.each(Subset::All, |sample| {
+        reader.each(Subset::ALL, |sample| {
             sample.put(0, &mut x, &mut h);
             reader.columns(&basis, &x, &h, from_mut(first_mut(&mut p, terms), 1));
             if let Some(colour) = reader.colour(sample) {
@@ -200,14 +196,14 @@ impl<R: Real> Accumulator<R> {
             self.units.offsets = scaled;
         }
         let mut f = scaled - self.units.offsets;
-        let (p, f) = (p.as_flattened_mut(), first_mut(&mut *f, self.layout.channels));
+        let (p, f) = (p.as_flattened_mut(), first_mut(&mut f.0, self.layout.channels));
         let (groups, rest) = halves_mut(sums, self.sums_len());
         if self.method == Method::Incremental {
             self.incremental.correct(self.config.ridge, rest, from(p, 1), f);
         }
         let fold = folds::of_stream(self.samples, self.groups());
         self.layout.group_mut(groups, fold).add(p, f);
-        self.samples += 1;
+        self.samples = self.samples.saturating_add(1);
         if self.method == Method::Incremental {
             self.incremental.refit(self.samples, &self.config, self.shape, self.layout, groups, rest);
         }
@@ -352,7 +348,7 @@ impl<R: Real> Accumulator<R> {
         if self.samples == 0 && R::NARROW {
             // Of nothing yet there is nothing to rescale.
             self.units.exponents = given;
-        } else if before.iter().zip(&*given).any(|(before, given)| before < given) {
+        } else if before.0.iter().zip(&given.0).any(|(before, given)| before < given) {
             self.units.exponents = before.zip(given, i32::max);
             let factors = before.zip(self.units.exponents, |before, now| R::ONE.scale((before - now).max(-149)));
             self.units.offsets = self.units.offsets * factors;

@@ -1,8 +1,9 @@
 //! A pixel's samples as a regression sees them: columns of functions, centred, and values, centred and scaled.
 
 use super::config::Config;
+use super::folds::Subset;
 use super::per_channel::PerChannel;
-use super::samples::{Reader, Subset};
+use super::samples::Reader;
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::lanes::{self, LANES, Lanes};
@@ -88,7 +89,7 @@ impl<'a, R: Real> Design<'a, R> {
         arena: &mut Arena<'a, R>,
     ) -> Option<Self> {
         let channels = reader.channels();
-        let count = reader.count(subset).div_ceil(LANES);
+        let count = subset.len(reader.len()).div_ceil(LANES);
         let (all_columns, all_values) = (arena.take_lanes(count * columns), arena.take_lanes(count * channels));
         let column_means = arena.zeros(columns);
         let mut units = units(reader, subset);
@@ -108,7 +109,7 @@ impl<'a, R: Real> Design<'a, R> {
             if let Some(panel) = column_panels.next() {
                 reader.columns(basis, &x, &h, panel);
             }
-            for (((out, f), &scale), &offset) in values.iter_mut().zip(&f).zip(&*scales).zip(&*units.offsets) {
+            for (((out, f), &scale), &offset) in values.iter_mut().zip(&f).zip(&scales.0).zip(&units.offsets.0) {
                 *out = f.map(|f| f * scale - offset);
             }
         }
@@ -128,7 +129,7 @@ impl<'a, R: Real> Design<'a, R> {
             // Of a narrow type twice: about an outlier, the first sample may be one, the first mean is rounded to it.
             for _ in 0..1 + usize::from(R::NARROW) {
                 let mut means = PerChannel::default();
-                self::centre(&mut values, n, first_mut(&mut *means, channels));
+                self::centre(&mut values, n, first_mut(&mut means.0, channels));
                 units.offsets += means;
             }
         }

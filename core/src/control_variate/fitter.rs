@@ -146,7 +146,7 @@ fn best_of<R: Real>(fits: &[Fit<R>; MAX_FITS], plain: &PerChannel<R>) -> usize {
     let mut best = (0, 0.0);
     for (index, fit) in fits.iter().enumerate() {
         let mut error = 0.0;
-        for (press, &plain) in fit.press.iter().zip(plain.iter()) {
+        for (press, &plain) in fit.press.0.iter().zip(&plain.0) {
             // Of a channel that is constant nothing counts.
             error += press.to_f64() / if plain > R::ZERO { plain.to_f64() } else { f64::INFINITY };
         }

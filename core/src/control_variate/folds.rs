@@ -7,26 +7,41 @@
 
 use core::num::NonZeroUsize;
 
-/// One of the folds of `n` samples that are all there: a run, all of the same length but for one sample.
+/// Which samples are meant: a run of them, or all others.
 #[derive(Clone, Copy)]
-pub(crate) struct Fold {
+pub(crate) struct Subset {
     start: usize,
     end: usize,
+    is_run: bool,
 }
 
-impl Fold {
-    pub(crate) fn new(index: usize, folds: NonZeroUsize, n: usize) -> Self {
+impl Subset {
+    /// All: none is left out.
+    pub(crate) const ALL: Self = Self { start: 0, end: 0, is_run: false };
+
+    /// One of the folds of `n` samples that are all there: a run, all of the same length but for one sample.
+    pub(crate) fn fold(index: usize, folds: NonZeroUsize, n: usize) -> Self {
         let (each, more) = (n / folds, n % folds);
         let start = |index: usize| index * each + index.min(more);
-        Self { start: start(index), end: start(index + 1) }
+        Self { start: start(index), end: start(index + 1), is_run: true }
     }
 
-    pub(crate) fn len(&self) -> usize {
-        self.end - self.start
+    pub(crate) fn others(self) -> Self {
+        Self { is_run: !self.is_run, ..self }
     }
 
-    pub(crate) fn contains(&self, index: usize) -> bool {
-        (self.start..self.end).contains(&index)
+    pub(crate) fn is_all(self) -> bool {
+        !self.is_run && self.start == self.end
+    }
+
+    pub(crate) fn contains(self, index: usize) -> bool {
+        (self.start..self.end).contains(&index) == self.is_run
+    }
+
+    /// How many of `n` samples.
+    pub(crate) fn len(self, n: usize) -> usize {
+        let run = self.end - self.start;
+        if self.is_run { run } else { n - run }
     }
 }
 

@@ -155,7 +155,7 @@ impl<R: Real> Progress<R> {
             *error = change.squares(*error, PerChannel::default(), R::ZERO);
         }
         for fit in rows_mut(rest, layout.coefficients()).take(FITS) {
-            for (coefficients, &factor) in rows_mut(fit, layout.columns).zip(change.factors.iter()) {
+            for (coefficients, &factor) in rows_mut(fit, layout.columns).zip(&change.factors.0) {
                 coefficients.iter_mut().for_each(|value| *value *= factor);
             }
         }

@@ -13,7 +13,6 @@ mod fitter;
 mod folds;
 mod image;
 mod incremental;
-mod k_fold;
 mod per_channel;
 mod plan;
 mod regressor;

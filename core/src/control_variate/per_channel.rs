@@ -5,7 +5,7 @@ use super::config::Config;
 use crate::matrix::copy;
 use crate::real::Real;
 use core::array;
-use core::ops::{Add, AddAssign, Deref, DerefMut, Index, IndexMut, Mul, Sub};
+use core::ops::{Add, AddAssign, Index, IndexMut, Mul, Sub};
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PerChannel<R>(pub(crate) [R; Config::MAX_CHANNELS]);
@@ -30,7 +30,7 @@ impl<R: Real> PerChannel<R> {
     /// What `f` says of each of so many channels.
     pub(crate) fn of(channels: usize, f: impl Fn(usize) -> R) -> Self {
         let mut all = Self::default();
-        for (channel, out) in all.iter_mut().enumerate().take(channels) {
+        for (channel, out) in all.0.iter_mut().enumerate().take(channels) {
             *out = f(channel);
         }
         all
@@ -39,7 +39,7 @@ impl<R: Real> PerChannel<R> {
     /// A row that has one number for each channel.
     pub(crate) fn from_row(row: &[R]) -> Self {
         let mut all = Self::default();
-        copy(&mut *all, row);
+        copy(&mut all.0, row);
         all
     }
 }
@@ -71,20 +71,6 @@ impl<R: Real> Mul<R> for PerChannel<R> {
 impl<R: Real> AddAssign for PerChannel<R> {
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
-    }
-}
-
-impl<R> Deref for PerChannel<R> {
-    type Target = [R; Config::MAX_CHANNELS];
-
-    fn deref(&self) -> &Self::Target {
-        &self.0
-    }
-}
-
-impl<R> DerefMut for PerChannel<R> {
-    fn deref_mut(&mut self) -> &mut Self::Target {
-        &mut self.0
     }
 }
 

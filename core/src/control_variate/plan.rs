@@ -5,7 +5,7 @@
 //! | `Plain` | `batch` | `accumulator` | yes | the values' spread |
 //! | `Robust` | `fitter` | `cross_fit::pooled` | nearly | residuals left out |
 //! | `LeaveOneOut` | `fitter` | - | yes | residuals left out |
-//! | `KFold` | `k_fold` | `cross_fit::nested` | yes | residuals held out |
+//! | `KFold` | `batch::k_fold` | `cross_fit::nested` | yes | residuals held out |
 //! | `LeastSquares` | `fitter` | `accumulator` | O(1/n) | residuals |
 //! | `SquareRoot` | as a stream | `fit::givens` | O(1/n) | residuals |
 //! | `Descent` | `fit::descent` | `fit::descent` | no | residuals and the gradient |

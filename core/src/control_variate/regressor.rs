@@ -8,7 +8,7 @@ use super::result::Summary;
 use super::samples::Sample;
 use super::sums::{Change, Form, Sums};
 use crate::arena::Arena;
-use crate::basis::{Basis, Family};
+use crate::basis::{Basis, Family, MAX_TERMS, Shape};
 use crate::error::{Error, ensure};
 use crate::matrix::{Panel, Triangle, first_mut, from_mut};
 use core::iter;
@@ -48,7 +48,8 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     /// # Errors
     /// [`Error::Range`] if `DIMS`, `order` and `TERMS` do not belong together or `CHANNELS` is not 1 to 4.
     pub fn new(family: Family, order: usize) -> Result<Self, Error> {
-        let basis = Basis::new(family, DIMS, order, 0)?;
+        let mut basis = Basis::empty();
+        basis.set(family, Shape::new(DIMS, order, 0, MAX_TERMS)?);
         ensure(basis.columns() + 1 == TERMS && (1..=Config::MAX_CHANNELS).contains(&CHANNELS), Error::Range)?;
         Ok(Self {
             basis,
@@ -74,11 +75,11 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         if self.samples == 0 {
             self.offset = PerChannel::from_row(&values);
         }
-        for (value, &offset) in values.iter_mut().zip(&*self.offset) {
+        for (value, &offset) in values.iter_mut().zip(&self.offset.0) {
             *value -= offset;
         }
         self.sums_mut().add(p.as_flattened_mut(), &mut values);
-        self.samples += 1;
+        self.samples = self.samples.saturating_add(1);
         Ok(())
     }
 
@@ -113,7 +114,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     /// # Errors
     /// [`Error::Mismatch`] if the bases differ.
     pub fn merge(&mut self, other: &Self) -> Result<(), Error> {
-        ensure(self.basis.is_same(&other.basis), Error::Mismatch)?;
+        ensure(self.basis == other.basis, Error::Mismatch)?;
         if self.samples == 0 {
             self.offset = other.offset;
         }

@@ -135,7 +135,7 @@ impl<R: Real> Summary<R> {
             // One sample's error is unknown in every channel, also where its colour is 0; and that of values which
             // cancel.
             let is_known = deviation.is_finite() && (!is_zero || deviation == 0.0);
-            for ((mean, error), colour) in mean.iter_mut().zip(error.iter_mut()).zip([red, green, blue]) {
+            for ((mean, error), colour) in mean.0.iter_mut().zip(&mut error.0).zip([red, green, blue]) {
                 *mean = ratio * colour;
                 *error = if is_known { libm::fabs(deviation * colour / divisor) } else { f64::INFINITY };
             }

@@ -1,13 +1,13 @@
 //! What the caller hands over: positions, values, and control functions at those positions.
 
 use super::config::{Color, Config, NonFinite};
-use super::folds::Fold;
+use super::folds::Subset;
 use super::per_channel::PerChannel;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::error::{Error, ensure};
 use crate::lanes::{LANES, Lanes};
+use crate::matrix::{first, from, halves_mut, row_at};
 use crate::real::Real;
-use crate::rows::{first, from, halves_mut, row_at};
 
 /// Rec. 709 luminance of linear RGB.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
@@ -39,26 +39,6 @@ impl<'a> Samples<'a> {
     /// What [`estimate`](super::estimate) says of its samples.
     pub fn check(&self, config: &Config) -> Result<(), Error> {
         Reader::new(config, *self)?.check()
-    }
-}
-
-/// Which samples of the arrays are meant.
-#[derive(Clone, Copy)]
-pub(crate) enum Subset {
-    All,
-    /// Those of one fold.
-    Fold(Fold),
-    /// All others.
-    Complement(Fold),
-}
-
-impl Subset {
-    fn contains(self, index: usize) -> bool {
-        match self {
-            Subset::All => true,
-            Subset::Fold(fold) => fold.contains(index),
-            Subset::Complement(fold) => !fold.contains(index),
-        }
     }
 }
 
@@ -112,15 +92,6 @@ impl<'a> Reader<'a> {
     /// How many samples the arrays hold.
     pub(crate) fn len(&self) -> usize {
         self.n
-    }
-
-    /// How many samples of a subset the arrays hold; at least as many as [`Reader::each`] visits.
-    pub(crate) fn count(&self, subset: Subset) -> usize {
-        match subset {
-            Subset::All => self.n,
-            Subset::Fold(fold) => fold.len(),
-            Subset::Complement(fold) => self.n - fold.len(),
-        }
     }
 
     /// How many values of a sample are regressed.
@@ -203,7 +174,7 @@ impl<'a> Reader<'a> {
         h: &mut [Lanes<R>; Config::MAX_CONTROLS],
         f: &mut [Lanes<R>; Config::MAX_CHANNELS],
     ) -> usize {
-        if matches!(subset, Subset::All) && self.is_simple() && self.n - *next >= LANES {
+        if subset.is_all() && self.is_simple() && self.n - *next >= LANES {
             transpose(from(self.samples.u, *next * self.stride), self.stride, self.dims, x);
             transpose(from(self.samples.f, *next * self.inputs), self.inputs, self.inputs, f);
             *next += LANES;
@@ -236,7 +207,7 @@ impl<'a> Reader<'a> {
         if self.luminance {
             values[0] = R::from(luminance(sample.f));
         } else {
-            for (value, &f) in values.iter_mut().zip(sample.f) {
+            for (value, &f) in values.0.iter_mut().zip(sample.f) {
                 *value = R::from(f);
             }
         }
@@ -307,7 +278,7 @@ impl<'a> Reader<'a> {
             return None;
         }
         let mut sums = PerChannel::default();
-        let used = self.each(Subset::All, |sample| sums += self.colour(sample).unwrap_or_default());
+        let used = self.each(Subset::ALL, |sample| sums += self.colour(sample).unwrap_or_default());
         Some(sums.map(|sum| sum / used.max(1) as f64))
     }
 }

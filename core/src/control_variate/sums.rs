@@ -176,9 +176,9 @@ impl<R: Real, S: DerefMut<Target = [R]>> Sums<S> {
         if self.form == Form::Factor {
             return self.merge_factor(other, change);
         }
-        add(&mut self.square, &*change.squares(other.squares(), other.totals(), other.count()));
+        add(&mut self.square, &change.squares(other.squares(), other.totals(), other.count()).0);
         for (j, (ours, theirs)) in self.rhs.rows_mut().zip(other.rhs.rows()).enumerate() {
-            add(ours, &*change.totals(PerChannel::from_row(theirs), other.gram.at(j, 0)));
+            add(ours, &change.totals(PerChannel::from_row(theirs), other.gram.at(j, 0)).0);
         }
         add(self.gram.entries_mut(), other.gram.entries());
     }
@@ -192,9 +192,9 @@ impl<R: Real, S: DerefMut<Target = [R]>> Sums<S> {
                 *x = if k < j { R::ZERO } else { other.gram.at(k, j) };
             }
             let mut y = change.totals(PerChannel::from_row(z), other.first_column(j));
-            self.add(x, first_mut(&mut *y, other.channels()));
+            self.add(x, first_mut(&mut y.0, other.channels()));
         }
-        add(&mut self.square, &*change.squares(PerChannel::from_row(other.square), PerChannel::default(), R::ZERO));
+        add(&mut self.square, &change.squares(PerChannel::from_row(other.square), PerChannel::default(), R::ZERO).0);
     }
 
     /// Makes the sums those of changed values.
@@ -203,11 +203,11 @@ impl<R: Real, S: DerefMut<Target = [R]>> Sums<S> {
         let is_products = self.form == Form::Products;
         let (totals, n) = if is_products { (self.totals(), self.count()) } else { (PerChannel::default(), R::ZERO) };
         let squares = change.squares(PerChannel::from_row(&self.square), totals, n);
-        copy(&mut self.square, &*squares);
+        copy(&mut self.square, &squares.0);
         for j in 0..self.gram.order() {
             let column = self.first_column(j);
             let row = self.rhs.row_mut(j);
-            copy(row, &*change.totals(PerChannel::from_row(row), column));
+            copy(row, &change.totals(PerChannel::from_row(row), column).0);
         }
     }
 }

@@ -155,7 +155,7 @@ impl<R: Real> Judge<R> {
         used: usize,
     ) -> (PerChannel<R>, [PerChannel<R>; C]) {
         let (mut plain_weight, mut weights) = (PerChannel::default(), [PerChannel::default(); C]);
-        for (channel, plain_weight) in plain_weight.iter_mut().enumerate() {
+        for (channel, plain_weight) in plain_weight.0.iter_mut().enumerate() {
             let of = |all: &[PerChannel<R>; C]| all.map(|each| each[channel]);
             let mut each = [R::ZERO; C];
             *plain_weight = weigh(self, plain[channel], &of(errors), &of(discounts), first_mut(&mut each, used));

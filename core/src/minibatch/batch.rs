@@ -5,15 +5,6 @@ use crate::mis::MAX_TECHNIQUES;
 use crate::mis::linear::Vector;
 
 /// Which technique drew each item of a minibatch, and how probable the item is to every technique.
-///
-/// ```
-/// use noisefloor::minibatch::Batch;
-///
-/// // Two techniques; the first drew one item of 100, the second two.
-/// let batch = Batch::new(100, 2, &[0.01, 0.02, 0.01, 0.002, 0.01, 0.03], &[0, 1, 1])?;
-/// assert_eq!((batch.len(), batch.techniques()), (3, 2));
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Batch<'a> {
     pub(super) items: f64,

@@ -2,8 +2,8 @@
 
 use super::linear::MAX_TECHNIQUES;
 use crate::error::{Error, check_part, ensure};
+use crate::matrix::at;
 use crate::real::Real;
-use crate::rows::at;
 
 /// The exponent that Veach recommends for [`power`].
 pub const DEFAULT_BETA: f32 = 2.0;

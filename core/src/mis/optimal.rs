@@ -21,7 +21,7 @@
 use super::linear::{self, MAX_TECHNIQUES, System, Vector};
 use super::solver::Solver;
 use crate::error::{Error, check_part, ensure};
-use crate::matrix::{at, copy, first, first_mut, packed_len, rows, rows_mut};
+use crate::matrix::{at, copy, first, first_mut, is_same, packed_len, rows, rows_mut};
 use crate::real::saturate;
 
 /// The f64 that [`OptimalMis`] needs; 0 if `techniques` is not in 1..=16, `integrals` is 0, or no memory could hold
@@ -249,7 +249,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// Errors: [`Error::Mismatch`] unless both have the same counts and number of integrals.
     pub fn merge<N: AsRef<[f64]>>(&mut self, other: &OptimalMis<N>) -> Result<(), Error> {
         let like = self.techniques == other.techniques && self.integrals == other.integrals;
-        ensure(like && same(&self.counts, &other.counts), Error::Mismatch)?;
+        ensure(like && is_same(&self.counts, &other.counts), Error::Mismatch)?;
         let sums = sums_len(self.techniques, self.integrals);
         let into = first_mut(self.memory.as_mut(), sums).iter_mut();
         into.zip(other.memory.as_ref()).for_each(|(to, from)| *to += from);
@@ -289,9 +289,4 @@ impl<S> Sums<S> {
         let (matrix, records) = split(rest, packed_len(techniques))?;
         Ok(Sums { samples, ratio, matrix, records, alphas })
     }
-}
-
-/// Equality without `bcmp`, which a freestanding target need not have.
-fn same(a: &[u32; MAX_TECHNIQUES], b: &[u32; MAX_TECHNIQUES]) -> bool {
-    a.iter().zip(b).fold(0, |difference, (a, b)| difference | (a ^ b)) == 0
 }

@@ -29,8 +29,8 @@ pub mod table;
 pub use crate::pixels::{PixelSampler, fill, fill_len};
 
 use crate::hash::{FRAMES, GOLDEN, SCRAMBLE, child, mix};
+use crate::matrix::first_mut;
 use crate::rng::unit;
-use crate::rows::first_mut;
 
 /// One sample of one pixel: 16 bytes, to be copied freely. Drawing does not change it. Any value of the fields is
 /// valid.

@@ -7,7 +7,7 @@
 use super::table::{BITS, SIZE, TABLE, fine, pascal};
 use super::{Sampler, WHITE};
 use crate::hash::{GOLDEN, mix};
-use crate::rows::chunk;
+use crate::matrix::chunk;
 
 /// The point in 32-bit fixed point.
 // See `Sampler::draw`.

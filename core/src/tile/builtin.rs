@@ -1,6 +1,6 @@
 //! The tiles that come with the library, each with a feature of its own.
 
-use super::format::{HEADER_BYTES, Header};
+use super::format::{HEADER_BYTES, shape};
 use super::view::Tile;
 use crate::Error;
 
@@ -80,9 +80,6 @@ impl Builtin {
     pub const fn tile(self) -> Result<Tile<'static>, Error> {
         let Some(bytes) = self.bytes() else { return Err(Error::Unsupported) };
         let Some((head, payload)) = bytes.split_first_chunk::<HEADER_BYTES>() else { return Err(Error::Length) };
-        match Header::parse(head) {
-            Ok(header) => Tile::new(header.shape(), payload),
-            Err(error) => Err(error),
-        }
+        Tile::new(shape(head), payload)
     }
 }

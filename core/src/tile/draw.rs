@@ -3,8 +3,8 @@
 use super::point::{Net, netted, point};
 use super::sampler::Sampler;
 use super::site::Site;
+use crate::matrix::from_mut;
 use crate::rng::unit;
-use crate::rows::from_mut;
 
 impl Sampler<'_> {
     /// The first N coordinates, 1 to 4, of this domain's point; each in [0, 1), a multiple of 2^-24.

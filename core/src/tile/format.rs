@@ -3,7 +3,7 @@
 use super::shape::Shape;
 use crate::checksum::crc;
 use crate::error::{Error, ensure};
-use crate::rows::{first, from};
+use crate::matrix::{chunk, first, from, is_same};
 
 /// Bytes of the header.
 pub const HEADER_BYTES: usize = 128;
@@ -86,41 +86,18 @@ impl Header {
     /// # Errors
     /// As for [`Tile::from_bytes`](super::Tile::from_bytes).
     pub fn decode(bytes: &[u8]) -> Result<(Header, &[u8]), Error> {
-        let is_ours = bytes.iter().zip(&MAGIC).all(|(byte, magic)| byte == magic) && !bytes.is_empty();
-        ensure(is_ours, Error::Foreign)?;
+        ensure(is_same(bytes, &MAGIC) && !bytes.is_empty(), Error::Foreign)?;
         let (head, payload) = bytes.split_first_chunk::<HEADER_BYTES>().ok_or(Error::Length)?;
-        let header = Header::parse(head)?;
-        // The header says nothing but its fields: all of its bytes are those it would be written with. Compared one by
-        // one, as `==` may call bcmp, which not every C library has.
-        let written = header.encode(payload)?;
-        let difference = head.iter().zip(&written).fold(0, |all, (a, b)| all | (a ^ b));
-        ensure(difference == 0, Error::Corrupt)?;
+        let version = u16::from_le_bytes([head[8], head[9]]);
+        ensure(version <= VERSION, Error::Version)?;
+        let (seed, kernel) =
+            (u64::from_le_bytes(chunk(from(head, 24))), chunk(from(head, HEADER_BYTES - KERNEL_BYTES)));
+        let header = Header { shape: shape(head), seed, kernel };
+        let is_valid = version == VERSION && header.shape.check().is_ok() && header.text_is_valid();
+        ensure(is_valid, Error::Corrupt)?;
+        // The header says nothing but its fields: all of its bytes are those it would be written with.
+        ensure(is_same(head, &header.encode(payload)?), Error::Corrupt)?;
         Ok((header, payload))
-    }
-
-    /// The fields, in range, of bytes whose checksum has yet to be compared.
-    pub(super) const fn parse(b: &[u8; HEADER_BYTES]) -> Result<Header, Error> {
-        let version = u16::from_le_bytes([b[8], b[9]]);
-        if version > VERSION {
-            return Err(Error::Version);
-        }
-        let shape = Shape {
-            size: u16::from_le_bytes([b[32], b[33]]) as u32,
-            spp: u16::from_le_bytes([b[34], b[35]]) as u32,
-            frames: u16::from_le_bytes([b[36], b[37]]) as u32,
-            dims: b[38] as u32,
-            bits: b[39] as u32,
-            progressive: u32::from_le_bytes([b[40], b[41], b[42], b[43]]) & PROGRESSIVE != 0,
-        };
-        let seed = u64::from_le_bytes([b[24], b[25], b[26], b[27], b[28], b[29], b[30], b[31]]);
-        let (_, kernel) = b.split_at(HEADER_BYTES - KERNEL_BYTES);
-        let Some(kernel) = kernel.first_chunk::<KERNEL_BYTES>() else { return Err(Error::Corrupt) };
-        let header = Header { shape, seed, kernel: *kernel };
-        if version == VERSION && shape.check().is_ok() && header.text_is_valid() {
-            Ok(header)
-        } else {
-            Err(Error::Corrupt)
-        }
     }
 
     /// With this checksum.
@@ -149,18 +126,20 @@ impl Header {
     }
 
     /// Printable ASCII, then zeros.
-    const fn text_is_valid(&self) -> bool {
-        let mut rest: &[u8] = &self.kernel;
-        let mut ended = false;
-        while let Some((&byte, others)) = rest.split_first() {
-            ended |= byte == 0;
-            let fits = if ended { byte == 0 } else { b' ' <= byte && byte <= b'~' };
-            if !fits {
-                return false;
-            }
-            rest = others;
-        }
-        true
+    fn text_is_valid(&self) -> bool {
+        self.kernel.iter().skip_while(|byte| (b' '..=b'~').contains(byte)).all(|&byte| byte == 0)
+    }
+}
+
+/// The shape that a header says, in range or not.
+pub(super) const fn shape(b: &[u8; HEADER_BYTES]) -> Shape {
+    Shape {
+        size: u16::from_le_bytes([b[32], b[33]]) as u32,
+        spp: u16::from_le_bytes([b[34], b[35]]) as u32,
+        frames: u16::from_le_bytes([b[36], b[37]]) as u32,
+        dims: b[38] as u32,
+        bits: b[39] as u32,
+        progressive: u32::from_le_bytes([b[40], b[41], b[42], b[43]]) & PROGRESSIVE != 0,
     }
 }
 

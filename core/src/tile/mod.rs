@@ -11,20 +11,6 @@
 //! - [`Header`]: how a tile is stored.
 //!
 //! `docs/tiles.md` has the semantics and a renderer's calls, `core/tiles/README.md` the format.
-//!
-//! ```
-//! # #[cfg(feature = "tile-64-1spp-2d")] {
-//! use noisefloor::tile::{Builtin, Sampler};
-//!
-//! let tile = Builtin::Size64Spp1Dims2.tile().unwrap();
-//! let sampler = Sampler::pixel(&tile, 10, 20, 0, 0);
-//! let [x, y] = sampler.draw::<2>();                  // where in the pixel
-//! let [a, b] = sampler.domain(1).draw::<2>();        // where on the lens
-//! let bounce = sampler.domain(2).domain(0);          // the first bounce, and below it its own decisions
-//! let [c, d, e] = bounce.domain(7).draw::<3>();
-//! assert!([x, y, a, b, c, d, e].iter().all(|u| (0.0..1.0).contains(u)));
-//! # }
-//! ```
 
 mod builtin;
 mod draw;

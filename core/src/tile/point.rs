@@ -6,7 +6,7 @@ use super::shape::Shape;
 use super::site::Site;
 use super::view::Tile;
 use crate::hash::{GOLDEN, child, mix};
-use crate::rows::chunk;
+use crate::matrix::chunk;
 
 /// Keeps domains of further dimensions apart from those of keys.
 const DIMENSIONS: u32 = 0x6469_6d73;

@@ -6,10 +6,11 @@
 
 use super::super::config::{Config, Estimate, Optimizer};
 use super::super::design::{self, Design, square};
+use super::super::folds::Subset;
 use super::super::per_channel::PerChannel;
 use super::super::plan::Plan;
 use super::super::result::{self, Outcome, Summary};
-use super::super::samples::{Reader, Samples, Subset};
+use super::super::samples::{Reader, Samples};
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::{Error, ensure};
@@ -96,7 +97,7 @@ pub fn estimate_from<R: Real>(
     let loaded = design::size(reader.len(), columns, reader.channels());
     let needed = loaded.and_then(|loaded| loaded.checked_add(size(columns, reader.channels())));
     let mut arena = Arena::new(workspace, needed)?;
-    let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena).ok_or(Error::NoSamples)?;
+    let design = Design::load(&reader, &basis, columns, Subset::ALL, true, &mut arena).ok_or(Error::NoSamples)?;
     let solutions = arena.take(coefficients.len());
     let (units, channel) = (design.units, |index: usize| index / columns.max(1));
     for (index, (out, &value)) in solutions.iter_mut().zip(&*coefficients).enumerate() {

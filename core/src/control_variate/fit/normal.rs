@@ -255,7 +255,7 @@ impl<'a, R: Real> Centred<'a, R> {
         }
         let value_means = sums.totals() * inverse;
         let squares = spread(sums.squares(), sums.totals(), value_means);
-        for (channel, (row, &mean)) in rhs.rows_mut().zip(value_means.iter()).enumerate() {
+        for (channel, (row, &mean)) in rhs.rows_mut().zip(&value_means.0).enumerate() {
             for (j, out) in row.iter_mut().enumerate() {
                 *out = sums.rhs.at(j + 1, channel) - sums.column_total(j) * mean;
             }
@@ -279,7 +279,7 @@ impl<'a, R: Real> Centred<'a, R> {
     /// The intercepts that go with coefficients, a row for each channel.
     pub(crate) fn intercepts(&self, coefficients: &[R]) -> PerChannel<R> {
         let mut intercepts = self.value_means;
-        for (intercept, b) in intercepts.iter_mut().zip(rows(coefficients, self.normal.means.len())) {
+        for (intercept, b) in intercepts.0.iter_mut().zip(rows(coefficients, self.normal.means.len())) {
             *intercept = b.iter().zip(self.normal.means).fold(*intercept, |sum, (&b, &m)| sum - b * m);
         }
         intercepts

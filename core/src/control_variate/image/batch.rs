@@ -7,20 +7,14 @@ use super::super::config::Config;
 use super::call::Call;
 use super::groups::{Group, Groups, Place};
 use super::pixels::{Image, MAX_AXES};
-use super::products::{
-    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Sums, minus, only, plus, product, total, zip_four,
-};
+use super::products::*;
 use super::terms::Terms;
-use crate::arena::Arena;
-use crate::lanes::{self, LANES};
-use crate::matrix::{at, row_at, row_at_mut, rows, set};
-use crate::real::Real;
 use core::array::from_fn;
 
 /// The most numbers of a place.
 pub(super) const MAX_FIXED: usize = 1 + MAX_AXES;
 /// Uniform coordinates from -1 to 1 times this have unit variance.
-const SQRT_3: f64 = 1.732_050_807_568_877_2;
+pub(super) const SQRT_3: f64 = 1.732_050_807_568_877_2;
 /// The largest value of a pixel that no fit is made to, in units of the largest that one is made to, is 2 to the power
 /// of this.
 const MOST: i32 = 56;
@@ -96,11 +90,6 @@ impl Units {
         let limited = lanes::zip(value, &self.limits, |value, most| Real::min(Real::max(value, -most), most));
         product(&limited, &self.scales)
     }
-}
-
-/// 2 to the power of an exponent from -126 to 127.
-fn power_of_two(exponent: i32) -> f32 {
-    f32::from_bits(((exponent + 127).clamp(0, 254) as u32) << 23)
 }
 
 impl<'a> Batch<'a> {
@@ -300,9 +289,9 @@ impl<'a> Batch<'a> {
             }
             for l in 0..LANES {
                 let exponent = Real::exponent(largest[l]).clamp(-126, 126);
-                units.powers[l] = power_of_two(exponent);
-                units.scales[l] = power_of_two(-exponent);
-                units.limits[l] = power_of_two(exponent + MOST);
+                units.powers[l] = Real::scale(1.0, exponent);
+                units.scales[l] = Real::scale(1.0, -exponent);
+                units.limits[l] = Real::scale(1.0, (exponent + MOST).min(127));
                 units.offsets[l] = if first[l] < f32::INFINITY { first[l] * units.scales[l] } else { 0.0 };
             }
         }

@@ -4,9 +4,7 @@
 //! So where the mean is trusted most, such pixels are left out of the fits to others.
 
 use super::batch::Batch;
-use super::products::{AT_ONCE, Colours, Eight, NONE, plus};
-use crate::lanes::{self, LANES};
-use crate::matrix::row_at;
+use super::products::*;
 
 /// One of so many pixels may be set aside at each end, rounded up.
 const SHARE: usize = 16;

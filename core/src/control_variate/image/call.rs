@@ -26,11 +26,6 @@ impl Call<'_> {
         self.config.estimator == Estimator::LeaveOneOut || matches!(self.config.ridge, Ridge::Fixed(_))
     }
 
-    /// Whether what is known alone corrects: a fit to values that depend on it has seen its own pixel.
-    pub(super) fn is_known_alone(&self) -> bool {
-        self.image.has_known() && self.config.estimator == Estimator::LeaveOneOut
-    }
-
     /// Values of a sample that fits are made to: of each channel f and, with something known, f less its part of that.
     pub(super) fn values(&self) -> usize {
         if self.image.has_known() { 2 * self.config.channels } else { self.config.channels }

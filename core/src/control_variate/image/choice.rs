@@ -4,16 +4,8 @@ use super::super::trust;
 use super::batch::{Batch, MAX_FIXED};
 use super::call::Call;
 use super::fit::Fits;
-use super::products::{
-    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, add_products, combine, minus, only, plus, plus_four, product, total,
-    zip_four,
-};
+use super::products::*;
 use super::terms::Terms;
-use crate::arena::Arena;
-use crate::lanes::{self, LANES};
-use crate::linalg::ldlt;
-use crate::matrix::{at, packed_len, row, row_at, row_at_mut, row_mut, rows, rows_mut};
-use crate::real::Real;
 use core::f32::consts::LOG2_E;
 use core::hint::black_box;
 

@@ -10,17 +10,9 @@ use super::batch::{Batch, MAX_FIXED};
 use super::call::Call;
 use super::fit::Fits;
 use super::groups::Place;
-use super::products::{
-    AT_ONCE, AT_ONCE_LANES, COLOURS, Colours, Eight, Four, NONE, Sums, add_products, combine, minus, only, plus,
-    plus_four, product, times,
-};
-use crate::arena::Arena;
+use super::products::*;
 use crate::basis::MAX_DIMS;
 use crate::control_variate::Config;
-use crate::lanes::{self, LANES, Lanes};
-use crate::linalg::ldlt;
-use crate::matrix::{at, copy, first_mut, from, from_mut, packed_len, row, row_at, row_at_mut, row_mut, set};
-use crate::real::Real;
 use core::f32::consts::{LN_2, LOG2_E};
 
 /// The fewest samples of a pixel that say whether it is cut by an edge.
@@ -46,7 +38,7 @@ const LEAST_VARIANCE: f32 = 1e-3;
 /// Points along a coordinate, and cells between them.
 const POINTS: usize = CELLS + 1;
 const CELLS: usize = 16;
-const SQRT_3: f32 = 1.732_050_8;
+const SQRT_3: f32 = super::batch::SQRT_3 as f32;
 const SQRT_5: f32 = 2.236_068;
 
 impl Call<'_> {

@@ -5,17 +5,10 @@
 
 use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED};
-use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, product, sums_to};
+use super::products::*;
 use super::seen::{SUMS, Seen};
 use super::slices::Apart;
 use super::terms::{MAX_FITS, Terms, scale};
-use crate::arena::Arena;
-use crate::lanes::{self, LANES};
-use crate::linalg::ldlt;
-use crate::matrix::{
-    at, copy, diagonal, first, first_mut, from, packed_len, row, row_at, row_at_mut, row_mut, rows, rows_mut, set,
-};
-use crate::real::Real;
 
 /// What a fit leaves of a sum of squares is at least this of it.
 const ROUNDING: f32 = 1e-5;

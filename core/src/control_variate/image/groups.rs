@@ -2,9 +2,7 @@
 
 use super::call::Call;
 use super::pixels::{Image, Rectangle};
-use crate::arena::Arena;
-use crate::lanes::LANES;
-use crate::matrix::{at, copy, first, from, from_mut, halves, halves_mut, part, row_at, row_at_mut};
+use super::products::*;
 use heapless::Vec;
 
 /// Windows that are worked on together hold at most so many pixels, or are eight.
@@ -128,20 +126,6 @@ impl Call<'_> {
         if self.is_joined() { index } else { self.windows.number(left + x, top + y, frame) }
     }
 
-    /// The places of a window by squares of 2 x 2, so that every fourth of them is not next to another.
-    fn each_place(&self, mut visit: impl FnMut([usize; 3])) {
-        let [width, height, frames] = self.windows.extent;
-        for frame in 0..frames {
-            for (y, x) in (0..height).step_by(2).flat_map(|y| (0..width).step_by(2).map(move |x| (y, x))) {
-                for (x, y) in [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)] {
-                    if x < width && y < height {
-                        visit([x, y, frame]);
-                    }
-                }
-            }
-        }
-    }
-
     /// Divides windows `first` to before `end` into groups.
     pub(super) fn divide(&self, first: usize, end: usize, groups: &mut Groups<'_>) {
         groups.count = 0;
@@ -152,11 +136,19 @@ impl Call<'_> {
         // Where the pixels of any window are, and how far their numbers are from its first pixel's.
         let (mut places, mut numbers) = (Pixels::<f32>::new(), Pixels::<u32>::new());
         let Rectangle { x: left, y: top, .. } = self.windows.given;
-        self.each_place(|[x, y, frame]| {
-            // A window has no more pixels than that.
-            let _ = places.push(f32::from_bits(Place::new(x, y, frame).0));
-            let _ = numbers.push(self.windows.number(left + x, top + y, frame) as u32);
-        });
+        let [width, height, frames] = self.windows.extent;
+        for frame in 0..frames {
+            // By squares of 2 x 2, so that every fourth place is not next to another.
+            for (y, x) in (0..height).step_by(2).flat_map(|y| (0..width).step_by(2).map(move |x| (y, x))) {
+                for (x, y) in [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)] {
+                    if x < width && y < height {
+                        // A window has no more pixels than that.
+                        let _ = places.push(f32::from_bits(Place::new(x, y, frame).0));
+                        let _ = numbers.push(self.windows.number(left + x, top + y, frame) as u32);
+                    }
+                }
+            }
+        }
         let mut filled = 0;
         // The pixels of a window that are in no group yet, and their surfaces.
         let mut left = Pixels::<(f32, u32)>::new();

@@ -6,11 +6,7 @@
 //! most v, and at most 1. Where more arrives than is known, v says little.
 
 use super::batch::Batch;
-use super::products::{AT_ONCE, Eight, NONE, minus, only, plus, product};
-use crate::arena::Arena;
-use crate::lanes::{self, LANES};
-use crate::matrix::{at, rows_mut};
-use crate::real::Real;
+use super::products::*;
 use core::hint::black_box;
 
 /// Integrals count as at least this much of the group's largest: what else arrives would decide where they are small.

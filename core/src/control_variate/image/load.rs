@@ -2,18 +2,9 @@
 
 use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED, kept};
-use super::products::{
-    AT_ONCE, COLOURS, Eight, Four, NONE, Part, Rows, Sums, add_products, empty, minus, only, plus, plus_four, times,
-    total, zip_four,
-};
+use super::products::*;
 use super::sliced::Sliced;
 use super::terms::Terms;
-use crate::arena::Arena;
-use crate::lanes::{self, LANES};
-use crate::matrix::{
-    at, copy, first, first_mut, from_mut, halves, halves_mut, row, row_at, row_at_mut, row_mut, rows, rows_mut, set,
-};
-use crate::real::Real;
 use core::array::from_fn;
 
 /// What samples are read to: they, their pixels, and sums.

@@ -8,15 +8,11 @@ use super::choice::{Choices, Shares, Spreads};
 use super::edges::Edges;
 use super::fit::Fits;
 use super::groups::{Group, Groups};
-use super::products::{AT_ONCE, COLOURS, Colours, NONE, minus, plus};
+use super::products::*;
 use super::steps;
 use super::sums::Band;
 use super::terms::Terms;
-use crate::arena::Arena;
-use crate::lanes::{self, LANES};
-use crate::matrix::{at, copy, row_at, row_at_mut, rows, set};
 use crate::processor::Processor;
-use crate::real::Real;
 use core::hint::black_box;
 
 impl Call<'_> {

@@ -15,15 +15,6 @@ const MOST: &CStr = c"pixels must be at most 2^30 - 1, all frames together";
 ///
 /// Parts of a picture can be estimated on their own, one on each thread: see `wanted`. Together they have the same bits
 /// as the whole.
-///
-/// ```
-/// use noisefloor::control_variate::Image;
-///
-/// // Two materials, side by side; windows of 16 x 16 pixels, each half over the last.
-/// let surfaces: Vec<u32> = (0..64 * 64).map(|pixel| u32::from(pixel % 64 < 20)).collect();
-/// let image = Image { surfaces: &surfaces, window: 16, ..Image::new(64, 64) };
-/// # assert_eq!(image.width, 64);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Image<'a> {
     /// Pixels in a row.

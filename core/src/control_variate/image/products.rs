@@ -1,9 +1,11 @@
 //! Sums of products, of eight groups side by side: what fits are made from.
 
-use crate::arena::Arena;
+pub(super) use crate::arena::Arena;
 use crate::basis::MAX_DIMS;
-use crate::lanes::{self, LANES, Lanes};
-use crate::matrix::{copy, from, halves, halves_mut, packed_len, part, row_at, row_at_mut, rows, rows_mut};
+pub(super) use crate::lanes::{self, LANES, Lanes};
+pub(super) use crate::linalg::ldlt;
+pub(super) use crate::matrix::*;
+pub(super) use crate::real::{Real, rounding, saturate};
 
 /// A number for each of eight groups.
 pub(super) type Eight = Lanes<f32>;

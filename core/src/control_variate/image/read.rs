@@ -2,10 +2,7 @@
 
 use super::batch::Batch;
 use super::call::Call;
-use super::products::{AT_ONCE, AT_ONCE_LANES, Eight, Four, NONE, Rows, minus};
-use crate::lanes::{self, LANES};
-use crate::matrix::{at, first_mut, from, halves_mut, part_mut};
-use crate::real::{Real, saturate};
+use super::products::*;
 use core::ops::Range;
 
 /// A column of some rows of `WIDTH` numbers, for each lane from where its rows start.

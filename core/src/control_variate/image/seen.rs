@@ -2,12 +2,7 @@
 
 use super::super::config::Config;
 use super::batch::{Batch, MAX_FIXED};
-use super::products::{AT_ONCE, Eight, Four, NONE, combine, minus, only, product};
-use super::terms::SINGULAR;
-use crate::lanes::{self, LANES};
-use crate::linalg::ldlt;
-use crate::matrix::{at, diagonal, from, halves, part, row_at, row_at_mut, rows};
-use crate::real::Real;
+use super::products::*;
 use core::ops::Range;
 
 /// Sums of [`Seen::correct`] of each value and fixed column.
@@ -77,7 +72,7 @@ impl Seen<'_> {
                     // A pixel that no fit is made to is corrected by the fit to all.
                     let residual = if batch.leaves_out { only(&inside[row], &residual) } else { residual };
                     for l in 0..LANES {
-                        let left = Real::max(1.0 - leverage[row][l], SINGULAR);
+                        let left = Real::max(1.0 - leverage[row][l], rounding());
                         out[row][l] = trend[row][l] - fitted[row][l] + reach[row][l] * (residual[l] / left);
                     }
                     lanes::keep_together();

@@ -5,12 +5,9 @@
 
 use super::super::config::Config;
 use super::batch::Batch;
-use super::products::{AT_ONCE, Eight, Four, NONE, Rows, empty, minus, plus};
+use super::products::*;
 use super::sliced::panels;
 use super::terms::Terms;
-use crate::arena::Arena;
-use crate::lanes::{self, LANES};
-use crate::matrix::{at, first, row_at, row_at_mut, rows, rows_mut};
 
 /// A panel is eight of the values' candidates.
 pub(super) struct Several<'a> {

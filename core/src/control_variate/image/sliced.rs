@@ -1,9 +1,6 @@
 //! Sums of samples by slices.
 
-use super::products::{AT_ONCE, Eight, Four, NONE, Part, Sums};
-use crate::arena::Arena;
-use crate::lanes::{self, LANES};
-use crate::matrix::{at, first, from, from_mut, halves_mut, packed_len, row_at_mut, row_mut, rows_mut};
+use super::products::*;
 
 /// Sums of one part's samples by slices. Each lane has its own, one after the other's, so that what a sample adds to
 /// those of its slice is together.

@@ -11,18 +11,10 @@
 //! factor that is known.
 
 use super::batch::{Batch, MAX_FIXED};
-use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, empty, minus, plus, product, sums_to};
+use super::products::*;
 use super::seen::{SUMS, Seen};
 use super::several::Several;
 use super::terms::{Terms, scale};
-use crate::arena::Arena;
-use crate::lanes::{self, LANES};
-use crate::linalg::ldlt;
-use crate::matrix::{
-    at, copy, diagonal, first_mut, halves, halves_mut, packed_len, part, row, row_at, row_at_mut, row_mut, rows,
-    rows_mut, set, split_at,
-};
-use crate::real::Real;
 use core::ops::Range;
 
 /// Fits of candidates that have as many own columns of each slice.

@@ -4,11 +4,7 @@ use super::super::config::{Config, Estimate};
 use super::super::result::{mean_divisor, saturate, standard_error};
 use super::call::Call;
 use super::groups::{Groups, Place};
-use super::products::{Eight, NONE, empty, product};
-use crate::arena::Arena;
-use crate::lanes::{self, LANES, Lanes};
-use crate::matrix::{at, first, from, halves_mut, row_at_mut, rows_mut};
-use crate::real::Real;
+use super::products::*;
 
 /// Sums of a pixel that are not a channel's: the weight of the groups that it was in, of those with an error, and their
 /// gain.

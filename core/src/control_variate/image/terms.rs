@@ -1,13 +1,10 @@
 //! Which columns a shared fit has, and which of them each candidate uses.
 
-use super::super::config::Config;
+use super::super::config::{Config, Estimator};
 use super::super::ridge;
 use super::call::Call;
-use super::products::{Eight, Four, times};
+use super::products::*;
 use crate::basis::{Basis, MAX_ORDER};
-use crate::lanes;
-use crate::matrix::{at, first, halves_mut, rows_mut};
-use crate::real::Real;
 use heapless::Vec;
 
 /// The most candidates: one for each degree, one with every slice's own functions, one with all columns.
@@ -23,8 +20,6 @@ const MOVING_PENALTY: f32 = 8.0;
 
 /// Ridge strength per sample if the caller gives none.
 const STRENGTH: f64 = 0.003;
-/// The least that 1 less a sample's leverage is taken for.
-pub(super) const SINGULAR: f32 = 64.0 * f32::EPSILON;
 
 /// What penalties of a fit to so many samples are multiplied by.
 pub(super) fn scale(config: &Config, samples: &Eight) -> Eight {
@@ -62,7 +57,9 @@ impl Terms {
         let (config, shape, axes) = (call.config, &call.shape, call.windows.axes());
         let (functions, fixed) = (shape.columns(), 1 + axes);
         let (slices, copies) = shape.slices_apart();
-        if call.is_known_alone() || functions + slices == 0 {
+        // What is known corrects alone: a fit to values that depend on it has seen its own pixel.
+        let is_known_alone = call.image.has_known() && config.estimator == Estimator::LeaveOneOut;
+        if is_known_alone || functions + slices == 0 {
             return Self { axes, has_edges, ..Self::default() };
         }
         let samples = pixels.saturating_mul(call.n);

@@ -5,8 +5,8 @@ use super::importances::Table;
 use super::kernel::{Kernel, Portable};
 use super::mixture::Mixture;
 use crate::error::{Error, ensure};
+use crate::matrix::{first, set};
 use crate::rng::Rng;
-use crate::rows::{first, set};
 
 /// A search for an item not yet taken ends where so many should have been found: once in e^64 searches, or where the
 /// table's memory has been damaged.

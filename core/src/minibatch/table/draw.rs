@@ -5,8 +5,8 @@ use super::kernel::{ARITY, Block, Kernel, prefetch};
 use super::mixture::{Mixture, Ways};
 use super::tree::{self, CHILDREN, Levels, Node};
 use crate::error::{Error, ensure};
+use crate::matrix::{from, halves, set};
 use crate::rng::{Rng, split_mix};
-use crate::rows::{from, halves, set};
 
 /// How many draws go down the tree together: enough to hide the latency of memory, few enough for the first cache.
 pub(super) const CHUNK: usize = 64;

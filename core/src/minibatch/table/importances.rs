@@ -4,8 +4,8 @@ use super::kernel::{ARITY, Block, Kernel, Portable};
 use super::mixture::Mixture;
 use super::tree::{self, CHILDREN, Levels, MAX_BLOCKS, Node};
 use crate::error::{Error, check_part, ensure};
+use crate::matrix::{at, first};
 use crate::real::power_of_two;
-use crate::rows::{at, first};
 use core::marker::PhantomData;
 
 /// The uniform fraction of a new table: no weight 1 / (N p) above 5. Measured best on classification (.2 to .5 are

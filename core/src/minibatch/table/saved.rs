@@ -7,7 +7,7 @@ use super::importances::{State, Table};
 use super::kernel::{Kernel, Portable};
 use crate::checksum::crc;
 use crate::error::{Error, ensure};
-use crate::matrix::{copy, first, from, from_mut};
+use crate::matrix::{copy, first, from, from_mut, is_same};
 
 /// Bytes before the importances.
 pub const HEADER_BYTES: usize = 32;
@@ -46,8 +46,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
 /// Errors: [`Error::Foreign`] for other bytes, [`Error::Version`] for a newer format, [`Error::Length`],
 /// [`Error::Corrupt`] for a version or a number of items that no table has.
 pub fn saved_items(bytes: &[u8]) -> Result<u32, Error> {
-    // Not by `starts_with`, which may call bcmp: a freestanding target need not have that.
-    ensure(bytes.iter().zip(&MAGIC).all(|(byte, magic)| byte == magic), Error::Foreign)?;
+    ensure(is_same(bytes, &MAGIC), Error::Foreign)?;
     let (version, items) = (u32::from_le_bytes(field(bytes, 8)?), u32::from_le_bytes(field(bytes, 12)?));
     match (version, items) {
         (0, _) | (VERSION, 0) => Err(Error::Corrupt),

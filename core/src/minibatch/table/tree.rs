@@ -4,7 +4,7 @@
 //! adds a difference to some of them, and as integers lose nothing the sums are those of a tree built afresh, bit for
 //! bit.
 
-use crate::rows::{first, from};
+use crate::matrix::{first, from};
 use core::hint::select_unpredictable;
 
 /// How many children a node has.

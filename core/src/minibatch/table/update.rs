@@ -4,8 +4,8 @@ use super::importances::{Table, check_importances};
 use super::kernel::{ARITY, Block, Kernel, Portable, prefetch};
 use super::tree::{self, CHILDREN, Node};
 use crate::error::{Error, check_part, ensure};
+use crate::matrix::{first_mut, from};
 use crate::real::power_of_two;
-use crate::rows::{first_mut, from};
 
 /// How many changes go up the tree together.
 const CHUNK: usize = 64;
