@@ -30,7 +30,8 @@ const NO_PICTURE: &str = "not a picture that can be read: use PNG, JPEG or OpenE
 /// The content of a tile's file, which begins as such files do; nothing else is known of it.
 ///
 /// # Errors
-/// The file is missing, a folder, unreadable, empty, too large (1 GiB; 128 MiB from a pipe or a device) or no such file.
+/// The file is missing, a folder, unreadable, empty, too large (1 GiB; 128 MiB from a pipe or a device) or no such
+/// file.
 pub fn tile(path: &Path) -> Result<Vec<u8>> {
     begun(path, &MAGIC, "not a tile file (.nft)")
 }
