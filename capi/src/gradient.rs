@@ -33,8 +33,7 @@ pub extern "C" fn nf_gradient_size(techniques: u32, parameters: u32) -> usize {
     convert::object_size::<Header, f32>(minibatch::gradient_len(techniques as usize, parameters as usize))
 }
 
-/// Makes an nf_gradient that has seen no batch in `memory`, or makes one forget: `*out` is its handle, the same
-/// address.
+/// Makes an nf_gradient without a batch in `memory`, or makes one forget: `*out` is its handle, the same address.
 ///
 /// NF_ERR_RANGE: techniques or parameters; NF_ERR_MEMORY.
 #[unsafe(no_mangle)]

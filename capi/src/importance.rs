@@ -13,8 +13,7 @@ pub const NF_NODES_NORM: u32 = 0;
 pub const NF_NODES_SIGN: u32 = 1;
 
 /// Of each of `rows` items: || softmax(logits) - onehot(label) ||, the norm of the cross-entropy loss's derivative by
-/// the logits (6.10), 0 to 1.4143; the loss; and that derivative, where backpropagation starts. NULL for what is not
-/// wanted.
+/// the logits (6.10), 0 to 1.4143; the loss; and that derivative, where backpropagation starts. NULL: not wanted.
 ///
 /// logits[rows * classes]: finite, of any size. label[rows]: below classes. importance[rows], loss[rows], gradient[rows
 /// * classes]: outputs; a loss beyond the range of float becomes the largest finite float.

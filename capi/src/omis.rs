@@ -42,8 +42,7 @@ struct Header {
 
 const MAGIC: u64 = magic::<Header>("nf_omis");
 
-/// Bytes of an nf_omis; 0 unless techniques is 1..NF_MIS_MAX_TECHNIQUES and integrals at least 1, or if no memory has
-/// them.
+/// Bytes of an nf_omis; 0 if techniques is not 1..NF_MIS_MAX_TECHNIQUES, integrals are 0, or no memory has them.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_omis_size(techniques: u32, integrals: u32) -> usize {
     convert::object_size::<Header, f64>(mis::len(techniques as usize, integrals as usize))
@@ -103,8 +102,7 @@ pub unsafe extern "C" fn nf_omis_add(
     })())
 }
 
-/// Estimates the integrals from all samples so far, or the weights' coefficients alpha (2.15); NULL for what is not
-/// wanted.
+/// Estimates the integrals from all samples so far, or the weights' coefficients alpha (2.15); NULL: not wanted.
 ///
 /// solver: NF_OMIS_*. ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for
 /// the default 2. It adds ridge (tr(N A) - 1) / n N^-1 to A, here that of one round, A / R, N being the counts and n
@@ -112,8 +110,7 @@ pub unsafe extern "C" fn nf_omis_add(
 /// technique j at p * techniques + j: outputs; one beyond the range of float becomes the largest finite float. alpha is
 /// for nf_mis_optimal_contribution, of NF_OMIS_PROGRESSIVE the current batch's.
 ///
-/// NF_ERR_NULL: no object, or nothing wanted; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge;
-/// NF_ERR_NO_SAMPLES.
+/// NF_ERR_NULL also if nothing is wanted; NF_ERR_RANGE: solver, ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_omis_solve(
     omis: *const nf_omis,
@@ -170,15 +167,13 @@ pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis
     })())
 }
 
-/// The optimal MIS gradient of a minibatch as one weight per drawn item (section 6.2): with them (1 / batch) sum_s
-/// weight[s] * gradient_s is the gradient of the mean loss for every parameter at once, by one backward pass over
-/// weighted losses.
+/// The optimal MIS gradient of a minibatch as a weight for each drawn item (section 6.2): (1 / batch) sum_s weight[s] *
+/// gradient_s is the mean loss's, for every parameter at once, by one backward pass over weighted losses.
 ///
 /// solver: NF_OMIS_RIDGE or NF_OMIS_PLAIN, consistent, of weights that may be negative, or NF_OMIS_BALANCE, unbiased.
 /// ridge: as for nf_omis_solve. techniques: J, 1..NF_MIS_MAX_TECHNIQUES. items: N, of the data set, at least 1.
 /// pdf[batch * J]: the probability, above 0 to 1 (1.001 for rounding), with which technique j draws the item of sample
-/// s, at s * J + j, before any update; 0 only for others than the technique that drew it. technique[batch]: which one
-/// drew sample s.
+/// s, at s * J + j, before any update; 0 only for others than the technique that drew it: technique[batch].
 /// weight[batch]: the output; one beyond the range of float becomes the largest finite float.
 ///
 /// With n_j samples of technique j, S_s = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2, weight_s =

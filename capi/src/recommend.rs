@@ -25,16 +25,14 @@ pub const NF_METHOD_SHARED: u32 = 2;
 pub struct nf_recommendation {
     /// How to make estimates of the samples: NF_METHOD_*
     pub method: u32,
-    /// `stride` of nf_cv_image for NF_METHOD_SHARED, in windows of 8. With surfaces leave it 0, for overlapping
-    /// windows.
+    /// `stride` of nf_cv_image for NF_METHOD_SHARED, in windows of 8. With surfaces leave it 0: windows overlap.
     pub image_stride: u32,
     /// Which tile of the library to draw from, if there is a choice: its samples per pixel. One of 1 sample is
     /// continued as a Sobol sequence.
     pub tile_samples: u32,
     /// The same: its dims.
     pub tile_dims: u32,
-    /// What to expect: mean squared error over that of the plain mean of independent samples, as docs/choosing.md
-    /// measures it.
+    /// What to expect: mean squared error over that of the plain mean of independent samples (docs/choosing.md).
     pub error: f32,
     /// The same of the image filtered by a Gaussian of 2.1 pixels.
     pub filtered_error: f32,
@@ -48,8 +46,7 @@ pub struct nf_recommendation {
     pub config: nf_cv_config,
 }
 
-/// Which estimator, order and tile to use for `spp` samples per pixel of `dims` coordinates, both at least 1
-/// (docs/choosing.md).
+/// Which estimator, order and tile to use for `spp` samples per pixel of `dims` coordinates, both at least 1.
 ///
 /// sampling: NF_SAMPLING_*. can_share: 1 if neighbouring pixels' samples are at hand together and integrate similar
 /// functions, else 0. sample_cost: nanoseconds to trace a sample, above 0; INFINITY compares errors at equal samples.

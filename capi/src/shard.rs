@@ -65,8 +65,7 @@ pub unsafe extern "C" fn nf_shards_allocate(
 /// estimate the gradient of the mean loss over all items. batch: from nf_shards_allocate. Where the others dwarf it a
 /// weight may be infinite.
 ///
-/// NF_ERR_RANGE also if the shards together have less than this table; else as for nf_table_draw and
-/// nf_shards_allocate.
+/// NF_ERR_RANGE also if the shards have less than this table; else as for nf_table_draw and nf_shards_allocate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_draw_shard(
     table: *const nf_table,

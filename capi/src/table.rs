@@ -171,8 +171,7 @@ pub unsafe extern "C" fn nf_table_update(
     }
 }
 
-/// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3. The uniform fraction does as much and costs
-/// nothing.
+/// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3. The uniform fraction does so at no cost.
 ///
 /// NF_ERR_RANGE; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]

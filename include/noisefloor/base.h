@@ -53,8 +53,7 @@ const char *nf_check(uint32_t kind, const void *what);
 
 /* Random numbers. */
 
-// A PCG32 random number generator (O'Neill 2014), for minibatches, examples and tests: the same numbers on every
-// target.
+// A PCG32 random number generator (O'Neill 2014), for minibatches and tests: the same numbers on every target.
 //
 // A complete struct, kept by value. A copy repeats the numbers its original has yet to give. Give each thread its own,
 // with its own seed. Any value of the fields is valid; nf_rng_seed sets them well. Not for cryptography.

@@ -257,15 +257,13 @@ nf_status nf_cv_accumulator_estimate(const nf_cv_accumulator *accumulator, void 
 // What nf_recommend() says.
 typedef struct nf_recommendation {
     uint32_t method; // How to make estimates of the samples: NF_METHOD_*
-    // `stride` of nf_cv_image for NF_METHOD_SHARED, in windows of 8. With surfaces leave it 0, for overlapping
-    // windows.
+    // `stride` of nf_cv_image for NF_METHOD_SHARED, in windows of 8. With surfaces leave it 0: windows overlap.
     uint32_t image_stride;
     // Which tile of the library to draw from, if there is a choice: its samples per pixel. One of 1 sample is
     // continued as a Sobol sequence.
     uint32_t tile_samples;
     uint32_t tile_dims; // The same: its dims.
-    // What to expect: mean squared error over that of the plain mean of independent samples, as docs/choosing.md
-    // measures it.
+    // What to expect: mean squared error over that of the plain mean of independent samples (docs/choosing.md).
     float error;
     float filtered_error; // The same of the image filtered by a Gaussian of 2.1 pixels.
     // Nanoseconds that the method takes for each sample on the machine of the report: of NF_METHOD_SHARED three
@@ -278,8 +276,7 @@ typedef struct nf_recommendation {
     nf_cv_config config;
 } nf_recommendation;
 
-// Which estimator, order and tile to use for `spp` samples per pixel of `dims` coordinates, both at least 1
-// (docs/choosing.md).
+// Which estimator, order and tile to use for `spp` samples per pixel of `dims` coordinates, both at least 1.
 // sampling: NF_SAMPLING_*. can_share: 1 if neighbouring pixels' samples are at hand together and integrate similar
 // functions, else 0. sample_cost: nanoseconds to trace a sample, above 0; INFINITY compares errors at equal samples.
 // NF_ERR_RANGE; NF_ERR_NOT_FINITE: a NaN.

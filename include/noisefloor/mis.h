@@ -67,8 +67,7 @@ nf_status nf_mis_optimal_contribution(const float *pdf, const uint32_t *counts, 
 // the samples got wrong about the densities' integrals.
 typedef struct nf_omis nf_omis;
 
-// Bytes of an nf_omis; 0 unless techniques is 1..NF_MIS_MAX_TECHNIQUES and integrals at least 1, or if no memory has
-// them.
+// Bytes of an nf_omis; 0 if techniques is not 1..NF_MIS_MAX_TECHNIQUES, integrals are 0, or no memory has them.
 size_t nf_omis_size(uint32_t techniques, uint32_t integrals);
 
 // Makes an empty nf_omis in `memory`, or empties one: `*out` is its handle, the same address. counts[techniques]: n_k,
@@ -85,15 +84,13 @@ nf_status nf_omis_init(void *memory, size_t bytes, uint32_t techniques, uint32_t
 // NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE.
 nf_status nf_omis_add(nf_omis *omis, uint32_t technique, const float *pdf, const float *value);
 
-// Estimates the integrals from all samples so far, or the weights' coefficients alpha (2.15); NULL for what is not
-// wanted.
+// Estimates the integrals from all samples so far, or the weights' coefficients alpha (2.15); NULL: not wanted.
 // solver: NF_OMIS_*. ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for
 // the default 2. It adds ridge (tr(N A) - 1) / n N^-1 to A, here that of one round, A / R, N being the counts and n
 // the samples, and at least 1e-8 tr(N A) N^-1. estimate[integrals], alpha[integrals * techniques], of integral p and
 // technique j at p * techniques + j: outputs; one beyond the range of float becomes the largest finite float. alpha is
 // for nf_mis_optimal_contribution, of NF_OMIS_PROGRESSIVE the current batch's.
-// NF_ERR_NULL: no object, or nothing wanted; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge;
-// NF_ERR_NO_SAMPLES.
+// NF_ERR_NULL also if nothing is wanted; NF_ERR_RANGE: solver, ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.
 nf_status nf_omis_solve(const nf_omis *omis, uint32_t solver, float ridge, float *estimate, float *alpha);
 
 // Ends a batch, between whole rounds: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so

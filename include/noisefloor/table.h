@@ -69,8 +69,7 @@ nf_status nf_table_draw_distinct(nf_table *table, nf_rng *rng, uint32_t batch, u
 nf_status nf_table_update(nf_table *table, const uint32_t *index, const float *importance, uint32_t batch,
     float momentum);
 
-// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3. The uniform fraction does as much and costs
-// nothing.
+// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3. The uniform fraction does so at no cost.
 // NF_ERR_RANGE; NF_ERR_NOT_FINITE.
 nf_status nf_table_add_epsilon(nf_table *table, float epsilon);
 
@@ -113,8 +112,7 @@ nf_status nf_shards_allocate(const nf_shard *shard, uint32_t shards, float unifo
 // its nf_shard was made: gradients times weights, summed over all processes and divided by the whole batch's size,
 // estimate the gradient of the mean loss over all items. batch: from nf_shards_allocate. Where the others dwarf it a
 // weight may be infinite.
-// NF_ERR_RANGE also if the shards together have less than this table; else as for nf_table_draw and
-// nf_shards_allocate.
+// NF_ERR_RANGE also if the shards have less than this table; else as for nf_table_draw and nf_shards_allocate.
 nf_status nf_table_draw_shard(const nf_table *table, const nf_shard *shard, uint32_t shards, nf_rng *rng,
     uint32_t batch, uint32_t *index, float *weight);
 
@@ -129,8 +127,7 @@ nf_status nf_shuffle(uint64_t seed, uint32_t items, uint64_t position, uint32_t 
 #define NF_NODES_SIGN 1
 
 // Of each of `rows` items: || softmax(logits) - onehot(label) ||, the norm of the cross-entropy loss's derivative by
-// the logits (6.10), 0 to 1.4143; the loss; and that derivative, where backpropagation starts. NULL for what is not
-// wanted.
+// the logits (6.10), 0 to 1.4143; the loss; and that derivative, where backpropagation starts. NULL: not wanted.
 // logits[rows * classes]: finite, of any size. label[rows]: below classes. importance[rows], loss[rows], gradient[rows
 // * classes]: outputs; a loss beyond the range of float becomes the largest finite float.
 // NF_ERR_RANGE: a label, or no classes; NF_ERR_NOT_FINITE: a logit.
@@ -160,14 +157,12 @@ typedef struct nf_importance_arguments {
     uint32_t techniques; // 1 to NF_MIS_MAX_TECHNIQUES, with NF_NODES_SIGN an even number.
 } nf_importance_arguments;
 
-// The optimal MIS gradient of a minibatch as one weight per drawn item (section 6.2): with them (1 / batch) sum_s
-// weight[s] * gradient_s is the gradient of the mean loss for every parameter at once, by one backward pass over
-// weighted losses.
+// The optimal MIS gradient of a minibatch as a weight for each drawn item (section 6.2): (1 / batch) sum_s weight[s] *
+// gradient_s is the mean loss's, for every parameter at once, by one backward pass over weighted losses.
 // solver: NF_OMIS_RIDGE or NF_OMIS_PLAIN, consistent, of weights that may be negative, or NF_OMIS_BALANCE, unbiased.
 // ridge: as for nf_omis_solve. techniques: J, 1..NF_MIS_MAX_TECHNIQUES. items: N, of the data set, at least 1.
 // pdf[batch * J]: the probability, above 0 to 1 (1.001 for rounding), with which technique j draws the item of sample
-// s, at s * J + j, before any update; 0 only for others than the technique that drew it. technique[batch]: which one
-// drew sample s.
+// s, at s * J + j, before any update; 0 only for others than the technique that drew it: technique[batch].
 // weight[batch]: the output; one beyond the range of float becomes the largest finite float.
 //
 // With n_j samples of technique j, S_s = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2, weight_s =
@@ -186,8 +181,7 @@ typedef struct nf_gradient nf_gradient;
 // 1..NF_MIS_MAX_TECHNIQUES and parameters at least 1, or if no memory has them.
 size_t nf_gradient_size(uint32_t techniques, uint32_t parameters);
 
-// Makes an nf_gradient that has seen no batch in `memory`, or makes one forget: `*out` is its handle, the same
-// address.
+// Makes an nf_gradient without a batch in `memory`, or makes one forget: `*out` is its handle, the same address.
 // NF_ERR_RANGE: techniques or parameters; NF_ERR_MEMORY.
 nf_status nf_gradient_init(void *memory, size_t bytes, uint32_t techniques, uint32_t parameters, nf_gradient **out);
 

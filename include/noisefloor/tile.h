@@ -27,8 +27,7 @@ typedef struct nf_sampler {
 } nf_sampler;
 
 // Sample `index` of pixel (x, y) in `frame`, any values of each. The samples of a pixel are one sequence, best at
-// powers of two. Frames are unrelated to each other: where they are averaged, leave the frame 0 and count the index
-// on.
+// powers of two. Frames are unrelated to each other: where they are averaged, keep frame 0 and count the index on.
 //
 // At indices 0 and 1 the numbers of all domains repeat every 32 pixels: an image has 1,024 different vectors. Seeds of
 // further numbers need the pixel, too.
@@ -90,8 +89,7 @@ extern const nf_tile nf_tile_64_1spp_2d; // 64 x 64 pixels, 1 sample, 2 dims.
 extern const nf_tile nf_tile_64_4spp_2d; // The same, 4 samples.
 extern const nf_tile nf_tile_64_4spp_2d_temporal; // The same, 4 samples, 16 frames.
 
-// The tile of an .nft file's bytes, all of them checked: about 3 ms for a megabyte. They must outlive the tile,
-// unchanged.
+// The tile of an .nft file's bytes, all of them checked: about 3 ms for a megabyte. They must outlive it unchanged.
 // NF_ERR_RANGE: a len that no memory has; NF_ERR_FOREIGN; NF_ERR_VERSION; NF_ERR_LENGTH; NF_ERR_CORRUPT.
 nf_status nf_tile_from_bytes(const void *bytes, size_t len, nf_tile *out);
 
@@ -108,8 +106,7 @@ typedef struct nf_tile_sampler {
 
 // Sample `index` of pixel (x, y) in `frame`, any values of each. Samples beyond tile->spp continue with a scrambled
 // Sobol sequence; frames beyond tile->frames are the tile at other places. For an image that is refined over time
-// leave the frame and count the index. The tile must outlive the sampler and stay where it is; of NULL all draws are
-// 0.
+// leave the frame and count the index. The tile must outlive the sampler and stay where it is; of NULL draws are 0.
 nf_tile_sampler nf_tile_sampler_pixel(const nf_tile *tile, uint32_t x, uint32_t y, uint32_t frame, uint32_t index);
 
 nf_tile_sampler nf_tile_sampler_domain(nf_tile_sampler sampler, uint32_t key); // As nf_sampler_domain().
@@ -119,8 +116,7 @@ nf_tile_sampler nf_tile_sampler_scramble(nf_tile_sampler sampler, uint32_t seed)
 
 // Writes the first `dims` coordinates, 1..4, as nf_sampler_draw() does. Up to tile->dims are optimised together, more
 // come from other places of the tile. Of a tile that is not progressive, with at least two dims and spp, each further
-// number is stratified, the third with the first two: draw a choice, or a time, after the two numbers that it goes
-// with.
+// number is stratified, the third with the first two: draw a choice, or a time, after the two numbers beside it.
 void nf_tile_sampler_draw(nf_tile_sampler sampler, uint32_t dims, float *u);
 
 // As nf_sampler_fill(), of tiles' samplers. Those without a tile draw zeros.

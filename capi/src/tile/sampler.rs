@@ -28,8 +28,7 @@ pub struct nf_tile_sampler {
 
 /// Sample `index` of pixel (x, y) in `frame`, any values of each. Samples beyond tile->spp continue with a scrambled
 /// Sobol sequence; frames beyond tile->frames are the tile at other places. For an image that is refined over time
-/// leave the frame and count the index. The tile must outlive the sampler and stay where it is; of NULL all draws are
-/// 0.
+/// leave the frame and count the index. The tile must outlive the sampler and stay where it is; of NULL draws are 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_tile_sampler_pixel(
     tile: *const nf_tile,
@@ -98,8 +97,7 @@ pub extern "C" fn nf_tile_sampler_scramble(sampler: nf_tile_sampler, seed: u32) 
 
 /// Writes the first `dims` coordinates, 1..4, as nf_sampler_draw() does. Up to tile->dims are optimised together, more
 /// come from other places of the tile. Of a tile that is not progressive, with at least two dims and spp, each further
-/// number is stratified, the third with the first two: draw a choice, or a time, after the two numbers that it goes
-/// with.
+/// number is stratified, the third with the first two: draw a choice, or a time, after the two numbers beside it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_tile_sampler_draw(sampler: nf_tile_sampler, dims: u32, u: *mut f32) {
     // SAFETY: passed on to the caller.

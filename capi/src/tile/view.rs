@@ -33,8 +33,7 @@ pub struct nf_tile {
 // SAFETY: nobody writes what `values` points to.
 unsafe impl Sync for nf_tile {}
 
-/// The tile of an .nft file's bytes, all of them checked: about 3 ms for a megabyte. They must outlive the tile,
-/// unchanged.
+/// The tile of an .nft file's bytes, all of them checked: about 3 ms for a megabyte. They must outlive it unchanged.
 ///
 /// NF_ERR_RANGE: a len that no memory has; NF_ERR_FOREIGN; NF_ERR_VERSION; NF_ERR_LENGTH; NF_ERR_CORRUPT.
 #[unsafe(no_mangle)]

@@ -1,4 +1,4 @@
-//! Sums of products, of eight groups side by side: what fits are made from.
+//! Sums of products, of eight groups side by side: what fits are made from. All files here are written with its words.
 
 pub(super) use crate::arena::Arena;
 use crate::basis::MAX_DIMS;
