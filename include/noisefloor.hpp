@@ -716,6 +716,17 @@ struct tile : nf_tile {
     template <class C, class = detail::if_ends<C>> static returned<tile> from_bytes(C &&) = delete;
 };
 
+namespace detail {
+// By nf_sampler_draw() or nf_tile_sampler_draw().
+template <class State> returned<void> draw(void (*from)(State, std::uint32_t, float *), State state, span<float> u)
+{
+    const bool fits = u.size() >= 1 && u.size() <= 4;
+    if (fits)
+        from(state, static_cast<std::uint32_t>(u.size()), u.data());
+    return finish(fits ? NF_OK : NF_ERR_RANGE);
+}
+} // namespace detail
+
 // nf_sampler: one sample of one pixel of the default sampler. `sampler(x, y, frame, index).domain(3).draw<2>()`.
 class sampler {
 public:
@@ -753,13 +764,7 @@ public:
         nf_sampler_draw(state_, std::uint32_t{N}, u);
     }
     // status::range unless there are 1 to 4 places.
-    returned<void> draw(span<float> u) const
-    {
-        const bool fits = u.size() >= 1 && u.size() <= 4;
-        if (fits)
-            nf_sampler_draw(state_, static_cast<std::uint32_t>(u.size()), u.data());
-        return detail::finish(fits ? NF_OK : NF_ERR_RANGE);
-    }
+    returned<void> draw(span<float> u) const { return detail::draw(nf_sampler_draw, state_, u); }
     const nf_sampler &state() const noexcept { return state_; }
 
 private:
@@ -814,13 +819,7 @@ public:
         nf_tile_sampler_draw(state_, std::uint32_t{N}, u);
     }
     // status::range unless there are 1 to 4 places.
-    returned<void> draw(span<float> u) const
-    {
-        const bool fits = u.size() >= 1 && u.size() <= 4;
-        if (fits)
-            nf_tile_sampler_draw(state_, static_cast<std::uint32_t>(u.size()), u.data());
-        return detail::finish(fits ? NF_OK : NF_ERR_RANGE);
-    }
+    returned<void> draw(span<float> u) const { return detail::draw(nf_tile_sampler_draw, state_, u); }
     const nf_tile_sampler &state() const noexcept { return state_; }
 
 private:
