@@ -101,6 +101,15 @@ pub(crate) fn row_mut<T>(triangle: &mut [T], j: usize) -> &mut [T] {
     part_mut(triangle, packed_len(j), j + 1)
 }
 
+/// All of its rows.
+pub(crate) fn triangle_rows_mut<T>(mut rest: &mut [T]) -> impl Iterator<Item = &mut [T]> {
+    (1..).map_while(move |len| {
+        let (row, after) = core::mem::take(&mut rest).split_at_mut_checked(len)?;
+        rest = after;
+        Some(row)
+    })
+}
+
 /// Entry (j, j) of a packed triangle.
 pub(crate) fn diagonal<T: Copy + Default>(triangle: &[T], j: usize) -> T {
     at(triangle, packed_len(j) + j)
@@ -212,6 +221,10 @@ impl<T: 'static, S: DerefMut<Target = [T]>> Triangle<S> {
 
     pub(crate) fn row_mut(&mut self, j: usize) -> &mut [T] {
         row_mut(&mut self.entries, j)
+    }
+
+    pub(crate) fn rows_mut(&mut self) -> impl Iterator<Item = &mut [T]> {
+        triangle_rows_mut(&mut self.entries)
     }
 
     pub(crate) fn at_mut(&mut self, j: usize, k: usize) -> Option<&mut T> {

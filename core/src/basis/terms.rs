@@ -80,8 +80,8 @@ pub(crate) fn total_degree(dims: usize, order: usize, gap: usize, terms: &mut Ve
             if power == 0 {
                 continue;
             }
-            for (dim, pure) in pure.iter().enumerate().take(dims).skip(usize::from(left.dim) + 1) {
-                let sources = [left.column, *pure.get(power)?];
+            for dim in usize::from(left.dim) + 1..dims {
+                let sources = [left.column, *pure.get(dim)?.get(power)?];
                 let column = column(terms.len())?;
                 terms.push(Term { column, degree: degree as u8, dim: dim as u8, product: true, sources }).ok()?;
             }

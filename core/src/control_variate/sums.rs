@@ -156,8 +156,8 @@ impl<R: Real, S: DerefMut<Target = [R]>> Sums<S> {
         if self.form == Form::Factor {
             return givens::add_row(&mut self.gram, &mut self.rhs, &mut self.square, p, f);
         }
-        for (j, &value) in p.iter().enumerate() {
-            for (out, &other) in self.gram.row_mut(j).iter_mut().zip(&*p) {
+        for (row, &value) in self.gram.rows_mut().zip(&*p) {
+            for (out, &other) in row.iter_mut().zip(&*p) {
                 *out += value * other;
             }
         }

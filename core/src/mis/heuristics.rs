@@ -28,8 +28,8 @@ pub const DEFAULT_BETA: f32 = 2.0;
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
 pub fn balance(pdf: &[f32], counts: &[u32], technique: usize) -> Result<f32, Error> {
-    let shares = Shares::new(pdf, counts, technique)?;
-    Ok(shares.weight(|share| share))
+    let densities = Densities::new(pdf, counts, technique)?;
+    Ok(densities.weight(|density| density))
 }
 
 /// The power heuristic: `(n_j p_j)^beta / sum_k (n_k p_k)^beta`; [`DEFAULT_BETA`] is 2.
@@ -40,14 +40,15 @@ pub fn balance(pdf: &[f32], counts: &[u32], technique: usize) -> Result<f32, Err
 pub fn power(pdf: &[f32], counts: &[u32], technique: usize, beta: f32) -> Result<f32, Error> {
     ensure(beta.is_finite(), Error::NotFinite)?;
     ensure(beta > 0.0, Error::Range)?;
-    let shares = Shares::new(pdf, counts, technique)?;
-    let raised = |share: f64| match beta {
-        2.0 => share * share,
-        // A share of 0 stays 0 however small beta is.
-        _ if share > 0.0 => libm::pow(share, f64::from(beta)),
-        _ => 0.0,
-    };
-    Ok(shares.weight(raised))
+    let densities = Densities::new(pdf, counts, technique)?;
+    if beta == DEFAULT_BETA {
+        return Ok(densities.weight(|density| density * density));
+    }
+    // Over the largest of them: no power is beyond f64.
+    let largest = densities.largest().or_one();
+    let raised = |density: f64| libm::pow(density / largest, f64::from(beta));
+    // 0 stays 0 however small beta is.
+    Ok(densities.weight(|density| if density > 0.0 { raised(density) } else { 0.0 }))
 }
 
 /// The cutoff heuristic: the balance heuristic among the techniques with `n_k p_k >= epsilon max_i n_i p_i`.
@@ -59,63 +60,77 @@ pub fn power(pdf: &[f32], counts: &[u32], technique: usize, beta: f32) -> Result
 /// technique. Other arguments and errors as for [`balance`].
 pub fn cutoff(pdf: &[f32], counts: &[u32], technique: usize, epsilon: f32) -> Result<f32, Error> {
     check_part(epsilon)?;
-    let shares = Shares::new(pdf, counts, technique)?;
-    let kept = |share: f64| if share >= f64::from(epsilon) { share } else { 0.0 };
-    Ok(shares.weight(kept))
+    let densities = Densities::new(pdf, counts, technique)?;
+    let least = f64::from(epsilon) * densities.largest();
+    Ok(densities.weight(|density| if density >= least { density } else { 0.0 }))
 }
 
 /// The maximum heuristic: 1 for the technique with the largest `n_k p_k`, the first of them if several tie; else 0.
 ///
 /// Arguments and errors as for [`balance`].
 pub fn maximum(pdf: &[f32], counts: &[u32], technique: usize) -> Result<f32, Error> {
-    let shares = Shares::new(pdf, counts, technique)?;
-    let best = shares.all().position(|share| share == 1.0);
-    Ok(if best == Some(technique) { 1.0 } else { 0.0 })
+    let densities = Densities::new(pdf, counts, technique)?;
+    let largest = densities.largest();
+    let is_first = densities.all().position(|density| density == largest) == Some(technique);
+    Ok(if is_first && largest > 0.0 { 1.0 } else { 0.0 })
 }
 
-/// n_k p_k of every technique over the largest of them.
-///
-/// The largest is exactly 1 (all are 0 if it is 0), so no later power or sum can overflow or lose everything.
-struct Shares {
-    share: [f64; MAX_TECHNIQUES],
+/// n_k p_k of every technique: of `f32` and of 32 bits, so that sums and squares of them are far from `f64`'s limits.
+struct Densities {
+    each: [f64; MAX_TECHNIQUES],
     techniques: usize,
     /// That of the technique whose weight is asked for.
     own: f64,
 }
 
-impl Shares {
-    fn new(pdf: &[f32], counts: &[u32], technique: usize) -> Result<Shares, Error> {
+impl Densities {
+    #[inline]
+    fn new(pdf: &[f32], counts: &[u32], technique: usize) -> Result<Densities, Error> {
         let techniques = pdf.len();
         let one_length = (1..=MAX_TECHNIQUES).contains(&techniques) && counts.len() == techniques;
         ensure(one_length && technique < techniques, Error::Range)?;
-        ensure(!pdf.iter().any(|p| p.is_nan()), Error::NotFinite)?;
-        ensure(pdf.iter().all(|&p| p >= 0.0), Error::Range)?;
-        let delta = pdf.iter().zip(counts).any(|(&p, &n)| n > 0 && p == f32::INFINITY);
-        let mut share = [0.0; MAX_TECHNIQUES];
-        let mut largest = 0.0_f64;
-        for (share, (&p, &n)) in share.iter_mut().zip(pdf.iter().zip(counts)) {
-            let density = match (delta, p == f32::INFINITY) {
-                (true, true) => 1.0,
-                (false, false) => f64::from(p),
-                // An infinite density beside none that counts has n = 0: it must not become 0 * infinity.
-                _ => 0.0,
-            };
-            *share = f64::from(n) * density;
-            largest = largest.max(*share);
+        let (mut each, mut is_usual) = ([0.0; MAX_TECHNIQUES], true);
+        for (density, (&p, &n)) in each.iter_mut().zip(pdf.iter().zip(counts)) {
+            is_usual &= (0.0..=f32::MAX).contains(&p);
+            *density = f64::from(n) * f64::from(p);
         }
-        let divisor = largest.or_one();
-        share.iter_mut().take(techniques).for_each(|share| *share /= divisor);
-        let own = at(&share, technique);
-        Ok(Shares { share, techniques, own })
+        if !is_usual {
+            each = unusual(pdf, counts)?;
+        }
+        Ok(Densities { each, techniques, own: at(&each, technique) })
     }
 
     fn all(&self) -> impl Iterator<Item = f64> {
-        self.share.iter().take(self.techniques).copied()
+        self.each.iter().take(self.techniques).copied()
     }
 
-    /// The part that the technique's own share has of the sum over all, once `f` has been applied to each.
+    fn largest(&self) -> f64 {
+        self.all().fold(0.0, f64::max)
+    }
+
+    /// The part that the technique's own density has of the sum over all, once `f` has been applied to each.
+    #[inline]
     fn weight(&self, f: impl Fn(f64) -> f64) -> f32 {
         let sum: f64 = self.all().map(&f).sum();
         (f(self.own) / sum.or_one()) as f32
     }
+}
+
+/// Where a density is infinite, NaN or negative.
+#[cold]
+fn unusual(pdf: &[f32], counts: &[u32]) -> Result<[f64; MAX_TECHNIQUES], Error> {
+    ensure(!pdf.iter().any(|p| p.is_nan()), Error::NotFinite)?;
+    ensure(pdf.iter().all(|&p| p >= 0.0), Error::Range)?;
+    let is_delta = |p: f32, n: u32| n > 0 && p == f32::INFINITY;
+    let any = pdf.iter().zip(counts).any(|(&p, &n)| is_delta(p, n));
+    let mut each = [0.0; MAX_TECHNIQUES];
+    for (density, (&p, &n)) in each.iter_mut().zip(pdf.iter().zip(counts)) {
+        *density = match (any, p == f32::INFINITY) {
+            (true, _) if is_delta(p, n) => f64::from(n),
+            (false, false) => f64::from(n) * f64::from(p),
+            // An infinite density beside none that counts has n = 0.
+            _ => 0.0,
+        };
+    }
+    Ok(each)
 }

@@ -2,7 +2,7 @@
 
 use super::solver::Solver;
 use crate::linalg::ldlt::Ldlt;
-use crate::matrix::{Triangle, copy, first, first_mut, packed_len};
+use crate::matrix::{Triangle, copy, first, first_mut, packed_len, triangle_rows_mut};
 use core::array::from_fn;
 
 /// The most techniques that one call combines.
@@ -101,9 +101,8 @@ pub(crate) fn add_products(cells: &mut [f64], x: &[f64], part: f64) {
 
 /// Calls `change` with each entry of a packed triangle and that of x x'.
 fn each_product(cells: &mut [f64], x: &[f64], change: impl Fn(&mut f64, f64)) {
-    let mut cells = cells.iter_mut();
-    for (j, row) in x.iter().enumerate() {
-        for (column, cell) in x.iter().take(j + 1).zip(&mut cells) {
+    for (line, row) in triangle_rows_mut(cells).zip(x) {
+        for (cell, column) in line.iter_mut().zip(x) {
             change(cell, row * column);
         }
     }
