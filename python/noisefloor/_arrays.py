@@ -105,6 +105,14 @@ def one_of(name, value, choices):
         raise ValueError(f"{name} is {value!r}: it must be one of {', '.join(map(repr, choices))}") from None
 
 
+def parts(state, *names):
+    """These parts of a saved state."""
+    try:
+        return [state[name] for name in names]
+    except KeyError as error:
+        raise ValueError(f"the state has no {error}: it must be state_dict()'s") from None
+
+
 def check(name, values, good, allowed):
     """Refuses the first element that is not good."""
     if not numpy.all(good):

@@ -143,7 +143,7 @@ def _names(prefix):
 
 
 ESTIMATORS, BASES, METHODS = _names("NF_CV_"), _names("NF_BASIS_"), _names("NF_METHOD_")
-MAX_DIMS, MAX_ORDER, MAX_CHANNELS = 16, 7, 4
+MAX_DIMS, MAX_ORDER, MAX_CHANNELS, MAX_TERMS = 16, 7, 4, 136
 
 FUNCTIONS = """
 uint32_t nf_abi_version(void);

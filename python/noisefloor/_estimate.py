@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import concurrent.futures
-from typing import Any, NamedTuple
+import math
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy
 
 from . import _arrays, _c
+
+ImageEstimator = Literal["robust", "leave_one_out", "k_fold"]
+Estimator = Literal[ImageEstimator, "least_squares", "gradient_descent", "incremental"]
+Basis = Literal["legendre", "step", "sine", "gaussian"]
 
 #: Estimates made in one call: the interpreter sees an interrupt between two.
 CHUNK = 1 << 15
@@ -23,6 +28,9 @@ class Estimate(NamedTuple):
         std_error: the mean's standard error, of the same shape; infinite where one sample is all there is, or,
             with the gain, least squares has no more samples than terms.
         gain: estimated variance relative to the plain mean's, without that axis; 1 is no gain.
+
+    Of `estimate` with `stratified`, std_error and gain are those of as many independent samples: mostly far too large,
+    and no bound. For the error of such points repeat with several seeds.
     """
 
     # Any: which of the two it is depends on shapes, which types do not tell.
@@ -36,8 +44,8 @@ def estimate(
     f: Any,
     *,
     order: int = 2,
-    estimator: str = "robust",
-    basis: str = "legendre",
+    estimator: Estimator = "robust",
+    basis: Basis = "legendre",
     dims: int | None = None,
     slices: int = 1,
     stratified: bool = False,
@@ -57,7 +65,7 @@ def estimate(
         dims: how many of the coordinates are regressed, the first 1 to 16; None: all.
         slices: above 1, the last of them picks one of so many equally likely alternatives.
         stratified: whether the points are (Sobol's, a lattice's, `Sampler`'s). All but "least_squares" and
-            "gradient_descent" are then their plain mean.
+            "gradient_descent" are then their plain mean; std_error and gain are those of independent samples.
         channels: whether f's last axis holds the values of a sample.
 
     Returns:
@@ -69,15 +77,20 @@ def estimate(
     _arrays.warn_of_lost_digits("f", given[1])
     values = 1 if channels else 0
     if u.ndim < 2 or f.ndim < 1 + values:
+        one = "; for one dim u[:, None]" if u.ndim == 1 else ""
         raise ValueError(
-            f"u has the shape {u.shape} and f {f.shape}: (..., n, d) and (..., n{', c' * values}) are needed"
+            f"u has the shape {u.shape} and f {f.shape}: (..., n, d) and (..., n{', c' * values}) are needed{one}"
         )
     n, d = u.shape[-2:]
     own = f.shape[f.ndim - 1 - values :]
     if own[0] != n:
-        raise ValueError(f"u has {n} samples and f {own[0]}, in the shapes {u.shape} and {f.shape}")
+        last = "; if f's last axis are values of a sample: channels=True" if f.shape[-2:-1] == (n,) else ""
+        raise ValueError(f"u has {n} samples and f {own[0]}, in the shapes {u.shape} and {f.shape}{last}")
     if n == 0:
         raise ValueError(f"u has the shape {u.shape}: there are no samples")
+    if channels and own[1] > _c.MAX_CHANNELS:
+        most = f"{_c.MAX_CHANNELS} are the most; for more put them first: estimate(u, f.T)"
+        raise ValueError(f"the number of f's channels is {own[1]}: {most}")
     config = configure(order, estimator, basis, d, dims, slices, stratified, own[1] if channels else 1)
     try:
         leading = numpy.broadcast_shapes(u.shape[:-2], f.shape[: f.ndim - 1 - values])
@@ -117,7 +130,7 @@ def image_estimate(
     known: Any = None,
     known_integrals: Any = None,
     order: int = 2,
-    estimator: str = "robust",
+    estimator: ImageEstimator = "robust",
     dims: int | None = None,
     slices: int = 1,
     edges: int = 0,
@@ -158,6 +171,9 @@ def image_estimate(
     if f.shape[: len(pixels) + 1] != u.shape[:-1] or f.ndim != u.ndim - 1 + values:
         raise ValueError(f"f has the shape {f.shape}: with this u it must be {u.shape[:-1] + ('c',) * values}")
     own = f.shape[u.ndim - 1 :]
+    _arrays.one_of("estimator", estimator, dict.fromkeys(get_args(ImageEstimator)))
+    if known is not None and estimator == "k_fold":
+        raise ValueError("known is given, and estimator is 'k_fold': with known it must be 'robust' or 'leave_one_out'")
     config = configure(order, estimator, "legendre", d, dims, slices, stratified, *own)
     config.edges = _arrays.integer("edges", edges, 0, max(0, config.dims - 1 - (config.slices > 1)))
     image = _c.Image(width=pixels[-1], height=pixels[-2], frames=pixels[0] if len(pixels) == 3 else 1)
@@ -233,9 +249,14 @@ def configure(order, estimator, basis, d, dims, slices, stratified, channels=1):
     config.dims = d if dims is None else _arrays.integer("dims", dims, 1, min(d, _c.MAX_DIMS))
     config.stride = d
     config.channels = _arrays.integer("the number of f's channels", channels, 1, _c.MAX_CHANNELS)
-    words = _c.wrong(config)
-    if words:
-        raise ValueError(f"order {order} in {config.dims} dims with {slices} slices: {words}")
+    if _c.wrong(config):
+        # All else was checked: it has too many terms.
+        own = config.slices if config.slices > 1 else 0
+        terms = math.comb(config.dims - bool(own) + config.order, config.order) + own
+        words = f"order {order} in {config.dims} dims with {slices} slices makes {terms} terms: at most {_c.MAX_TERMS}"
+        while config.order and _c.wrong(config):
+            config.order -= 1
+        raise ValueError(words + ("" if _c.wrong(config) else f"; order {config.order} fits"))
     return config
 
 

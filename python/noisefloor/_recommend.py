@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from . import _arrays, _c
+from ._estimate import ImageEstimator
 
 
 class Recommendation(NamedTuple):
@@ -14,7 +15,7 @@ class Recommendation(NamedTuple):
     Attributes:
         method: "plain_mean", "per_pixel" (`estimate`) or "shared" (`image_estimate`).
         order, estimator, stratified: what to give to that function.
-        image_stride: `stride` of `image_estimate`, or None; with surfaces leave it.
+        image_stride: `stride` of `image_estimate`, None of other methods; with surfaces leave it.
         error: mean squared error over that of the plain mean of independent samples.
         filtered_error: the same of an image seen through a Gaussian of 2.1 pixels.
         cost: nanoseconds that the method takes for each sample.
@@ -22,9 +23,9 @@ class Recommendation(NamedTuple):
         dims: how many coordinates to give to that function, the first; 15 of 20, say.
     """
 
-    method: str
+    method: Literal["plain_mean", "per_pixel", "shared"]
     order: int
-    estimator: str
+    estimator: ImageEstimator
     stratified: bool
     image_stride: int | None
     error: float
@@ -61,13 +62,13 @@ def recommend(
     def name(names, value):
         return next(name for name, number in names.items() if number == value)
 
-    config = out.config
+    config, method = out.config, name(_c.METHODS, out.method)
     return Recommendation(
-        method=name(_c.METHODS, out.method),
+        method=method,
         order=config.order,
         estimator=name(_c.ESTIMATORS, config.estimator),
         stratified=bool(config.stratified),
-        image_stride=out.image_stride or None,
+        image_stride=out.image_stride if method == "shared" else None,
         error=out.error,
         filtered_error=out.filtered_error,
         cost=out.cost,

@@ -92,8 +92,9 @@ class QMCEngine:
 
     Args:
         d: dims, 1 to 4. In 2 it is as good as `scipy.stats.qmc.Sobol`; in more that is the better engine.
-        seed: 0 to 2**32 - 1; sequences of different seeds are unrelated, but for the first two points: one of 1,024
-            pairs. None: another one each time.
+        seed: 0 to 2**32 - 1. None: another one each time. First points are one of few sequences: of 1,024 pairs, of
+            2,048 fours, of some 500,000 of 64 points, so that means of few points are slightly biased over seeds. For
+            error bars of repetitions take scipy's `Sobol`.
     """
 
     def __init__(self, d: int, *, seed: int | None = None) -> None:
@@ -101,6 +102,9 @@ class QMCEngine:
         self.seed = secrets.randbits(32) if seed is None else _arrays.integer("seed", seed, 0, _arrays.MAX_U32)
         self.num_generated = 0
         self._sampler = Sampler(frame=self.seed, white=True)
+
+    def __repr__(self):
+        return f"QMCEngine({self.d}, seed={self.seed})"
 
     def random(self, n: int = 1) -> NDArray[numpy.float64]:
         """The next n points, float64 of shape (n, d), at least 0 and below 1; best where n is a power of two."""

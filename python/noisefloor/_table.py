@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Mapping
-from typing import Any, SupportsIndex
+from typing import Any, Literal, SupportsIndex
 
 import numpy
 from numpy.typing import NDArray
@@ -80,7 +80,9 @@ class Table:
             self._table.uniform_fraction = value
 
     def draw(
-        self, batch: SupportsIndex | tuple[SupportsIndex, ...], method: str = "iid"
+        self,
+        batch: SupportsIndex | tuple[SupportsIndex, ...],
+        method: Literal["iid", "stratified", "distinct"] = "iid",
     ) -> tuple[NDArray[numpy.int64], NDArray[numpy.float32]]:
         """Draws items in proportion to importance.
 
@@ -181,6 +183,14 @@ class Table:
             _arrays.check_positive("importance", given[1])
             raise ValueError(_c.message(status))
 
+    def _fill(self, importance):
+        """All items get this importance, above 0 as float32."""
+        values, fraction = numpy.full(self._n, importance, numpy.float32), self.uniform_fraction
+        with self._lock:
+            status = _c.table_init(self._at, _c.data(self._memory), self._memory.nbytes, self._n, _c.data(values))
+            assert not status, _c.message(status)
+            self._table.uniform_fraction = fraction
+
     def probabilities(self, index: Any = None) -> NDArray[numpy.float32]:
         """The probability of drawing each of these items, float32, of index's shape; of all items for None."""
         if index is None:
@@ -205,7 +215,8 @@ class Table:
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Becomes the table that `state_dict` saw, of as many items."""
-        saved = _arrays.array("table", state["table"])
+        saved, rng = _arrays.parts(state, "table", "rng")
+        saved = _arrays.array("table", saved)
         if saved.dtype != numpy.uint8:
             raise TypeError(f"table holds {saved.dtype}: uint8 is expected")
         saved = numpy.ascontiguousarray(saved)
@@ -213,7 +224,7 @@ class Table:
         items = int.from_bytes(saved[12:16].tobytes(), "little") if saved[:8].tobytes() == b"nf_table" else 0
         if items not in (0, self._n):
             raise ValueError(f"the state has {items} items, this table {self._n}")
-        rng = [_arrays.integer("rng", number, 0, 2**64 - 1) for number in state["rng"]]
+        rng = [_arrays.integer("rng", number, 0, 2**64 - 1) for number in rng]
         if len(rng) != 2:
             raise ValueError(f"rng is {rng}: it must be two integers")
         with self._lock:
@@ -223,8 +234,14 @@ class Table:
             self._rng.state, self._rng.increment = rng
 
     def __getstate__(self):
-        return {"n": self._n, **self.state_dict()}
+        others = {name: value for name, value in vars(self).items() if name not in OWN}
+        return {"n": self._n, "others": others, **self.state_dict()}
 
     def __setstate__(self, state):
+        vars(self).update(state["others"])
         self._prepare(state["n"])
         self.load_state_dict(state)
+
+
+#: Attributes that a copy makes anew; those of subclasses it carries.
+OWN = frozenset(vars(Table(1)))

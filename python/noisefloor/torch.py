@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import warnings
 import zlib
 from collections import deque
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping, Sized
+from typing import Any, Literal
 
 import numpy
 import torch
@@ -16,6 +17,8 @@ from torch.utils.data import Sampler
 
 from . import _arrays, _c
 from ._table import Table
+
+__all__ = ["ImportanceBatchSampler", "cross_entropy_importance"]
 
 #: Weights nearer to 0, which optimal MIS may give, hide the gradient: such items keep their importance.
 LEAST_WEIGHT = 1e-3
@@ -45,10 +48,11 @@ class ImportanceBatchSampler(Sampler):
     processes, as `DistributedDataParallel` does.
 
     Args:
-        n: how many items the data set has, 1 to 2**32 - 1.
+        n: how many items the data set has, 1 to 2**32 - 1, or what has a length: the data set itself.
         batch_size: items in a batch, of each process.
         steps: batches in an epoch; None: n / batch_size / processes, rounded up.
-        warmup: "epoch": each item once before any is drawn by importance; None: importances begin as 1.
+        warmup: "epoch": each item once before any is drawn by importance; None: items that nothing was said of count as
+            the mean of what `update` is told first.
         uniform_fraction: the part of draws that are uniform, 0 to 1; with one technique no weight is above
             1 / uniform_fraction.
         momentum: 0 to 1: of an item's importance, from one visit to the next; none in warm-up.
@@ -62,11 +66,11 @@ class ImportanceBatchSampler(Sampler):
 
     def __init__(
         self,
-        n: int,
+        n: int | Sized,
         batch_size: int,
         *,
         steps: int | None = None,
-        warmup: str | None = "epoch",
+        warmup: Literal["epoch"] | None = "epoch",
         uniform_fraction: float = 0.2,
         momentum: float = 0.3,
         techniques: int = 1,
@@ -75,10 +79,15 @@ class ImportanceBatchSampler(Sampler):
         process_group: Any = None,
     ) -> None:
         self._distributed, self._group = is_distributed(), process_group
+        if process_group is not None and not self._distributed:
+            raise ValueError("process_group is given, but torch.distributed is not initialised")
         self._rank = torch.distributed.get_rank(process_group) if self._distributed else 0
         self._processes = torch.distributed.get_world_size(process_group) if self._distributed else 1
         if self._rank < 0:
             raise ValueError(f"process_group is {process_group}: it must be one that this process belongs to")
+        # Arrays without axes only say that they have a length, and a text's is not meant.
+        if isinstance(n, Sized) and getattr(n, "ndim", 1) and not isinstance(n, str):
+            n = len(n)
         self._n = _arrays.integer("n", n, 1, _arrays.MAX_U32)
         self.batch_size = _arrays.integer("batch_size", batch_size, 1, _arrays.MAX_U32 // self._processes)
         self._whole = self.batch_size * self._processes
@@ -95,31 +104,61 @@ class ImportanceBatchSampler(Sampler):
         seeds = [(self._seed + j * 0x9E3779B97F4A7C15) % 2**64 for j in range(techniques)]
         self._tables = [Table(self._n, uniform_fraction=uniform_fraction, seed=own) for own in seeds]
         self.epoch = 0
-        self._drawn = self._step = self._unasked = 0
+        self._drawn = self._step = self._unasked = self._loop = 0
+        self._is_fresh, self._has_ended = not self._warmup, False
         self._ahead, self._replay, self._last, self._resumed = deque(), deque(), None, False
 
     def __len__(self) -> int:
         return self._steps
 
+    def __repr__(self):
+        return (
+            f"ImportanceBatchSampler({self._n}, {self.batch_size}, steps={self._steps}, "
+            f"techniques={len(self._tables)}, seed={self._seed})"
+        )
+
+    def probabilities(self) -> torch.Tensor:
+        """With which probability each item is drawn next, after warm-up: float32 of shape (n,); of several techniques
+        the mean."""
+        return torch.from_numpy(numpy.mean([table.probabilities() for table in self._tables], 0))
+
     def __iter__(self) -> Iterator[list[int]]:
-        """The batches of an epoch, or what is left of it after `load_state_dict`: a list of indices for each."""
+        """The batches of an epoch, or what is left of it after `load_state_dict`: a list of indices for each. One loop
+        at a time; a new one ends that before."""
         if self._unasked == 2:
             raise RuntimeError(
                 "batch() was not called for any batch of two epochs: it is for each batch of the loader, once, and "
                 f"without it `epoch` stays {self.epoch}"
             )
-        if not self._resumed:
+        waiting = len(self._ahead)
+        if self._has_ended and not self._resumed and 0 < waiting < self._step:
+            warnings.warn(
+                f"batch() was called for {self._step - waiting} of {self._step} batches: but for a loop that was left, "
+                "weights went to other batches than theirs. batch(index) refuses that",
+                RuntimeWarning,
+                stacklevel=2,
+            )
+        if self._resumed:
+            # What was glanced at comes again.
+            self._replay.extendleft(reversed(self._ahead))
+        else:
             self._step = 0
             # First visits that did not come about, because the loader was left, are made up for.
             self._drawn = min(self._drawn, self._warmup) - sum(first for *_, first in (*self._ahead, *self._replay))
             self._replay.clear()
-        self._resumed = False
         self._ahead.clear()
+        self._loop += 1
+        loop, self._has_ended = self._loop, False
         while self._replay or self._step < self._steps:
             batch = self._replay.popleft() if self._replay else self._draw()
             self._ahead.append(batch)
             yield batch[0][self._rank :: self._processes].tolist()
+            if self._loop != loop:
+                raise RuntimeError(
+                    "another loop over this sampler has begun: one at a time; evaluate with a loader of its own"
+                )
         self._unasked += 1
+        self._has_ended = True
 
     def _draw(self):
         """Indices and weights of the next batch of all processes, and whether it is the first visit of its items."""
@@ -161,17 +200,28 @@ class ImportanceBatchSampler(Sampler):
             raise ValueError(_c.message(status))
         return index, weight
 
-    def batch(self) -> tuple[torch.Tensor, torch.Tensor]:
+    def batch(self, index: Any = None) -> tuple[torch.Tensor, torch.Tensor]:
         """Index and weight, int64 and float32 tensors of shape (batch_size,) on the CPU, of the batch that the
         loader has just handed over; once for each batch. The mean of weight times loss estimates the mean loss over all
-        items."""
+        items.
+
+        Args:
+            index: what the data set handed over with the items; refused if it is not this batch's.
+        """
         if not self._distributed and is_distributed() and torch.distributed.get_world_size() > 1:
             raise RuntimeError("this sampler knows of no other process: make it after init_process_group")
         if not self._ahead:
             raise RuntimeError(
                 "batch() is for each batch of the loader, once: there is none that it was not called for"
             )
-        self._last, self._unasked = self._ahead.popleft(), 0
+        own = self._ahead[0][0][self._rank :: self._processes]
+        if index is not None and not numpy.array_equal(_arrays.integers("index", index, self._n - 1), own):
+            number = self._step - len(self._ahead) - len(self._replay) + 1
+            raise RuntimeError(
+                f"these are not the items of batch {number} of {self._steps}: batch() was left out, or the loader is "
+                "out of order"
+            )
+        self._last, self._unasked, self._resumed = self._ahead.popleft(), 0, False
         if not self._ahead and not self._replay and self._step >= self._steps:
             self.epoch += 1
         return self._own(0), self._own(1)
@@ -188,7 +238,7 @@ class ImportanceBatchSampler(Sampler):
 
         Args:
             importance: shape (batch_size,), finite, at least 0; with several techniques (batch_size, techniques). Only
-                ratios count, once no item has the 1 any more that it begins with.
+                ratios count.
             index: integers of shape (batch_size,); None: the items of the last `batch`. As many in every process.
         """
         self._learn(importance, index)
@@ -221,6 +271,12 @@ class ImportanceBatchSampler(Sampler):
         if not ((importance >= 0) & (importance <= LARGEST)).all():
             known = self._known(importance, scaled)
             index, importance = index[known], importance[known]
+        if self._is_fresh and len(index):
+            means = importance.mean(0, dtype=numpy.float64).astype(numpy.float32)
+            self._is_fresh = not (means > 0).all()
+            # Else items of which nothing is known yet would count as 1, whatever the scale.
+            for table, mean in zip(self._tables, means if not self._is_fresh else ()):
+                table._fill(mean)
         for j, table in enumerate(self._tables):
             table.update(index, importance[:, j], 0.0 if first else self._momentum)
 
@@ -236,7 +292,7 @@ class ImportanceBatchSampler(Sampler):
             item, process = divmod(int(finite.argmin()), self._processes)
             raise ValueError(
                 f"{self._whose(process)}logits.grad[{item}] is not finite: the loss is not, or a GradScaler "
-                "multiplied it and scale was not given"
+                "multiplied it and scale was not given; scale=1.0 leaves such items out"
             )
         return finite & positive
 
@@ -269,10 +325,15 @@ class ImportanceBatchSampler(Sampler):
 
     @torch.no_grad()
     def update_from(
-        self, logits: torch.Tensor, *, reduction: str = "mean", scale: float | None = None, split: str = "sign"
+        self,
+        logits: torch.Tensor,
+        *,
+        reduction: Literal["mean", "sum"] = "mean",
+        scale: float | None = None,
+        split: Literal["sign", "norm"] = "sign",
     ) -> None:
-        """As `update`, by the norm of each item's derivative of the loss by its outputs. After the backward pass, with
-        `logits.retain_grad()` before it.
+        """As `update`, by the norm of each item's derivative of the loss by its outputs, of the items of the last
+        `batch`: once after each backward pass, before the next `batch`, with `logits.retain_grad()` before the pass.
 
         Args:
             logits: the model's outputs, (batch_size,) or (batch_size, ...), any loss's.
@@ -285,13 +346,17 @@ class ImportanceBatchSampler(Sampler):
                 norm of the positive ones, then of the negative ones.
         """
         scaled, scale = scale is not None, _arrays.number("scale", 1.0 if scale is None else scale, 1e-30, 3.4e38)
+        check_tensor("logits", logits)
         if logits.grad is None:
             raise ValueError("logits.grad is None: call logits.retain_grad() before the backward pass")
         if logits.is_complex():
             raise TypeError(f"logits holds {logits.dtype}: real numbers are expected")
         weight = self._own(1).to(logits.device)
-        if len(logits) != len(weight):
-            raise ValueError(f"logits has the shape {tuple(logits.shape)}: the last batch has {len(weight)} items")
+        if logits.shape[:1] != weight.shape:
+            raise ValueError(
+                f"logits has the shape {tuple(logits.shape)}: (batch_size, ...) is needed, of the last batch's "
+                f"{len(weight)} items"
+            )
         count = _arrays.one_of("reduction", reduction, {"mean": len(weight), "sum": 1})
         is_by_sign = _arrays.one_of("split", split, {"sign": True, "norm": False})
         gradient = logits.grad.float().reshape(len(weight), -1) * (count / scale) / weight[:, None]
@@ -323,6 +388,7 @@ class ImportanceBatchSampler(Sampler):
             "tables": [torch.from_numpy(table["table"]) for table in tables],
             "rng": [list(table["rng"]) for table in tables],
             "epoch": self.epoch,
+            "is_fresh": self._is_fresh,
             "drawn": self._drawn,
             "step": self._step,
             "ahead": [(torch.from_numpy(index), torch.from_numpy(weight), first) for index, weight, first in ahead],
@@ -333,13 +399,14 @@ class ImportanceBatchSampler(Sampler):
         arguments `n`, `batch_size` and `techniques` must be the same, and `seed` becomes the state's. Several
         techniques take the memory of one more table meanwhile."""
         mine = {"n": self._n, "whole_batch": self._whole, "tables": len(self._tables)}
-        its = {"n": state["n"], "whole_batch": state["whole_batch"], "tables": len(state["tables"])}
+        n, whole, states, rngs, ahead = _arrays.parts(state, "n", "whole_batch", "tables", "rng", "ahead")
+        its = {"n": n, "whole_batch": whole, "tables": len(states)}
         if mine != its:
             raise ValueError(f"the state is another sampler's: it has {its}, this one {mine}")
         # Nothing of this sampler changes before all of the state has been read.
-        replay = deque((*(_arrays.array("ahead", part) for part in parts), first) for *parts, first in state["ahead"])
-        seed, epoch, drawn, step = (state[name] for name in ("seed", "epoch", "drawn", "step"))
-        tables = [{"table": table, "rng": rng} for table, rng in zip(state["tables"], state["rng"])]
+        replay = deque((*(_arrays.array("ahead", part) for part in parts), first) for *parts, first in ahead)
+        seed, epoch, is_fresh, drawn, step = _arrays.parts(state, "seed", "epoch", "is_fresh", "drawn", "step")
+        tables = [{"table": table, "rng": rng} for table, rng in zip(states, rngs)]
         if len(tables) > 1:  # one table refuses by itself; of several none may have been changed before
             spare = Table(self._n)
             for table in tables:
@@ -348,7 +415,7 @@ class ImportanceBatchSampler(Sampler):
             fraction = own.uniform_fraction
             own.load_state_dict(table)
             own.uniform_fraction = fraction
-        self._seed, self.epoch, self._drawn, self._step = seed, epoch, drawn, step
+        self._seed, self.epoch, self._is_fresh, self._drawn, self._step = seed, epoch, is_fresh, drawn, step
         self._replay, self._last = replay, None
         self._ahead.clear()
         self._unasked = 0
@@ -364,19 +431,28 @@ def is_distributed() -> bool:
     return torch.distributed.is_available() and torch.distributed.is_initialized()
 
 
+def check_tensor(name, value):
+    """Refuses what is no tensor."""
+    if not isinstance(value, torch.Tensor):
+        raise TypeError(f"{name} is a {type(value).__name__}: a tensor is expected")
+
+
 def cross_entropy_importance(logits: torch.Tensor, target: torch.Tensor) -> torch.Tensor:
     """The norm of the cross-entropy loss's derivative by the logits, || softmax - onehot ||, without a backward pass.
 
     Args:
         logits: shape (batch, classes).
-        target: int64 of shape (batch,), 0 to classes - 1.
+        target: integers of shape (batch,), 0 to classes - 1.
 
     Returns:
         float32 of shape (batch,), 0 to 1.4143.
     """
+    check_tensor("logits", logits)
+    check_tensor("target", target)
     if logits.ndim != 2:
         raise ValueError(f"logits has the shape {tuple(logits.shape)}: it must be (batch, classes)")
     _arrays.check_shape("target", target, tuple(logits.shape[:1]), "a class for each item")
+    _arrays.integers("target", target, logits.shape[1] - 1)
     with torch.no_grad():
-        derivative = torch.softmax(logits.float(), 1) - torch.nn.functional.one_hot(target, logits.shape[1])
+        derivative = torch.softmax(logits.float(), 1) - torch.nn.functional.one_hot(target.long(), logits.shape[1])
         return derivative.norm(dim=1)

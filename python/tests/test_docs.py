@@ -68,6 +68,10 @@ def test_its_types_are_the_packages(tmp_path):
     sources.append("import noisefloor.mitsuba as nf\nnf.register()\nnf.prepare(None)\n")
     sources.append("import numpy as np\nimport noisefloor\nnoisefloor.Table(10).draw(np.int64(3))\n")
     wrong = "import noisefloor\nnoisefloor.Table(10).draw('10')\nnoisefloor.estimate([], []).variance\n"
+    # Options' names are types, too.
+    wrong += "noisefloor.Table(10).draw(4, 'idd')\nnoisefloor.image_estimate(0, 0, estimator='least_squares')\n"
+    wrong += "noisefloor.estimate([], [], basis='sin')\nnoisefloor.recommend(2, 1).method == 'pixel'\n"
+    wrong += "from noisefloor.torch import ImportanceBatchSampler\nImportanceBatchSampler(10, 2, warmup='no')\n"
     said = check_types(tmp_path, *sources, wrong)
     assert 'has incompatible type "str"' in said and 'has no attribute "variance"' in said
-    assert f"Found 2 errors in 1 file (checked {len(sources) + 1} source files)" in said, said
+    assert f"Found 7 errors in 1 file (checked {len(sources) + 1} source files)" in said, said

@@ -133,7 +133,9 @@ def test_no_integrals_and_very_many():
     [
         ((samples(4, 2), samples(5)), {}, r"u has 4 samples and f 5"),
         ((samples(4, 2), samples()), {}, r"u has the shape \(4, 2\) and f \(\): "),
-        ((samples(4), samples(4)), {}, r"\(\.\.\., n, d\)"),
+        ((samples(4), samples(4)), {}, r"\(\.\.\., n, d\) .* are needed; for one dim u\[:, None\]"),
+        ((samples(4, 2), samples(4, 3)), {}, r"u has 4 samples and f 3, .* values of a sample: channels=True$"),
+        ((samples(4, 2), samples(5, 3)), {}, r"u has 4 samples and f 3, in the shapes \(4, 2\) and \(5, 3\)$"),
         ((samples(0, 2), samples(0)), {}, "there are no samples"),
         ((samples(2, 4, 2), samples(3, 4)), {}, "do not broadcast"),
         ((2 * samples(4, 2) + 1, samples(4)), {}, r"u\[0, 0\] is .*: it must be 0 to 1"),
@@ -142,14 +144,18 @@ def test_no_integrals_and_very_many():
         ((samples(4, 2), numpy.full(4, "a")), {}, "f holds <U1: real numbers"),
         ((samples(4, 17), samples(4)), {}, "u has 17 coordinates: 1 to 16 can be regressed; `dims`"),
         ((samples(4, 0), samples(4)), {}, "u has 0 coordinates"),
-        ((samples(4, 12), samples(4)), {"order": 4}, "order 4 in 12 dims with 1 slices: .* more than 136 terms"),
+        ((samples(4, 12), samples(4)), {"order": 4}, "makes 1820 terms: at most 136; order 2 fits"),
+        ((samples(4, 6), samples(4)), {"order": 7}, "order 7 in 6 dims with 1 slices makes 1716 terms: .* 3 fits"),
+        ((samples(4, 3), samples(4)), {"slices": 131}, "with 131 slices makes 137 terms: at most 136; order 1 fits"),
+        ((samples(4, 2), samples(4)), {"slices": 200, "order": 0}, "200 slices makes 201 terms: at most 136$"),
         ((samples(4, 2), samples(4)), {"order": 8}, "order is 8: it must be 0 to 7"),
         ((samples(4, 2), samples(4)), {"order": 1.5}, "order is 1.5: an integer"),
         ((samples(4, 2), samples(4)), {"dims": 3}, "dims is 3: it must be 1 to 2"),
         ((samples(4, 2), samples(4)), {"estimator": "best"}, "estimator is 'best': it must be one of 'robust'"),
         ((samples(4, 2), samples(4)), {"basis": "cubic"}, "basis is 'cubic'"),
         ((samples(4, 2), samples(4)), {"slices": 0}, "slices is 0"),
-        ((samples(4, 2), samples(4, 5)), {"channels": True}, "number of f's channels is 5: it must be 1 to 4"),
+        ((samples(4, 2), samples(4, 5)), {"channels": True}, r"channels is 5: 4 are the most; .*: estimate\(u, f.T\)"),
+        ((samples(4, 2), samples(4, 0)), {"channels": True}, "f's channels is 0: it must be 1 to 4"),
         (([[1.0, 2.0], [1.0]], [1.0, 2.0]), {}, "u is no array of numbers"),
         ((samples(4, 2), numpy.ma.array(samples(4), mask=[0, 1, 0, 0])), {}, "f is a masked array"),
     ],
@@ -268,7 +274,8 @@ def test_known_light_leaves_no_error():
         ({"window": 33}, "window is 33: it must be 1 to 32"),
         ({"stride": 9}, "stride is 9: it must be 1 to 8"),
         ({"threads": 0}, "threads is 0: it must be 1 to 1024"),
-        ({"estimator": "incremental"}, "estimator 'incremental', order 2, 2 dims"),
+        ({"estimator": "incremental"}, "estimator is 'incremental': .* one of 'robust', 'leave_one_out', 'k_fold'$"),
+        ({"known": numpy.zeros((24, 24, 1)), "estimator": "k_fold"}, "known is given, and estimator is 'k_fold': "),
         ({"channels": True}, r"f has the shape \(24, 24, 1\): with this u it must be"),
     ],
 )
@@ -313,7 +320,9 @@ def test_recommendations():
     best = noisefloor.recommend(20, 64)
     u = samples(64, 20)
     noisefloor.estimate(u[:, : best.dims], smooth(u), order=best.order, estimator=best.estimator)
-    assert noisefloor.recommend(2, 1, stratified=True, can_share=True).method == "shared"
+    assert best.method == "per_pixel" and best.image_stride is None
+    best = noisefloor.recommend(2, 1, stratified=True, can_share=True)
+    assert best.method == "shared" and best.image_stride == 8
     # What docs/python.md says of Sobol points: no fit is safe.
     for dims, n in ((1, 64), (2, 256), (4, 1024), (8, 4096)):
         assert noisefloor.recommend(dims, n, stratified=True).method == "plain_mean"

@@ -41,7 +41,7 @@ def test_engine_has_scipys_manners():
     engine, sobol = noisefloor.QMCEngine(3, seed=5), stats.qmc.Sobol(3, seed=5)
     points = engine.random(64)
     assert points.shape == sobol.random(64).shape and points.dtype == sobol.random(1).dtype
-    assert engine.num_generated == 64
+    assert engine.num_generated == 64 and repr(engine) == "QMCEngine(3, seed=5)"
     assert numpy.array_equal(engine.reset().random(64), points)
     assert numpy.array_equal(noisefloor.QMCEngine(3, seed=5).fast_forward(10).random(5), points[10:15])
     assert engine.random(0).shape == (0, 3)
@@ -54,6 +54,15 @@ def test_engines_are_unbiased_over_seeds():
     means = [numpy.exp(noisefloor.QMCEngine(2, seed=seed).random(16).sum(1)).mean() for seed in range(4000)]
     z = (numpy.mean(means) - (math.e - 1) ** 2) / (numpy.std(means) / math.sqrt(len(means)))
     assert abs(z) < 4.5
+
+
+def test_first_points_of_engines_are_of_few_sequences():
+    """What the docstring says: that seeds are no replications there."""
+    firsts = [noisefloor.QMCEngine(2, seed=seed).random(64) for seed in range(20000)]
+    pairs, fours, all_64 = (len({points[:n].tobytes() for points in firsts}) for n in (2, 4, 64))
+    assert (pairs, fours) == (1024, 2048)
+    # Some 500,000 sequences make 400 of 200 million pairs of seeds the same.
+    assert 300 < 20000 - all_64 < 500
 
 
 def test_what_memory_has_not_is_refused_at_once():

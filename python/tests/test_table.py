@@ -186,6 +186,7 @@ def test_arrays_of_anybody():
         (lambda t: t.draw(1, []), r"method is \[\]"),
         (lambda t: t.probabilities([10]), r"index\[0\] is 10"),
         (lambda t: setattr(t, "uniform_fraction", 2), "uniform_fraction is 2.0"),
+        (lambda t: t.load_state_dict({}), "the state has no 'table': it must be state_dict"),
         (lambda t: t.load_state_dict(noisefloor.Table(9).state_dict()), "the state has 9 items, this table 10"),
         (
             lambda t: t.load_state_dict({"table": numpy.zeros(300, numpy.uint8), "rng": (0, 0)}),
@@ -231,6 +232,23 @@ def test_copies_draw_the_same():
         assert all(numpy.array_equal(a, b) for a, b in zip(expected, other.draw(40)))
         other.update([0], [5.0])
     assert table.probabilities([0]) < copies[0].probabilities([0])
+
+
+class Named(noisefloor.Table):
+    """A table with attributes of its own."""
+
+    def __init__(self, n, name):
+        super().__init__(n)
+        self.name, self.notes = name, []
+
+
+def test_copies_carry_a_subclasss_attributes():
+    table = Named(10, "losses")
+    table.update([3], [5.0])
+    for other in (copy.copy(table), copy.deepcopy(table), pickle.loads(pickle.dumps(table))):
+        assert type(other) is Named and other.name == "losses" and other.notes == []
+        assert numpy.array_equal(other.probabilities(), table.probabilities())
+    assert copy.copy(table).notes is table.notes is not copy.deepcopy(table).notes
 
 
 def _draw_elsewhere(table, results):

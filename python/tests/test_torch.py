@@ -107,11 +107,12 @@ def test_a_refused_state_changes_nothing():
     state = ImportanceBatchSampler(40, 4, seed=6, techniques=2, warmup=None).state_dict()
     damaged = state["tables"][1].clone()
     damaged[40] ^= 1
-    for wrong, error in (
-        ({**state, "tables": [state["tables"][0], damaged]}, ValueError),
-        ({name: part for name, part in state.items() if name != "step"}, KeyError),
+    for wrong, said in (
+        ({**state, "tables": [state["tables"][0], damaged]}, "the state's table"),
+        ({name: part for name, part in state.items() if name != "step"}, "the state has no 'step': it must be"),
+        ({}, "the state has no 'n': it must be state_dict"),
     ):
-        with pytest.raises(error):
+        with pytest.raises(ValueError, match=said):
             sampler.load_state_dict(wrong)
     assert equal(run_techniques(sampler), run_techniques(same))
 
@@ -191,6 +192,62 @@ def test_batches_asked_for_beyond_the_first_visits_leave_no_item_out():
     next(iter(sampler))
     seen.append(sampler.batch()[0].tolist())
     assert seen == asked[:10] and set(sum(seen, [])) == set(range(80))
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_a_batch_left_out_is_told(workers):
+    data = TensorDataset(torch.arange(200))
+    sampler = ImportanceBatchSampler(data, 8)
+    loader = DataLoader(data, batch_sampler=sampler, num_workers=workers)
+    for k, (items,) in enumerate(loader):
+        if k != 5:
+            assert torch.equal(sampler.batch()[0], items) == (k < 5)
+    assert sampler.epoch == 0
+    with pytest.warns(RuntimeWarning, match="called for 24 of 25 batches"):
+        batches = iter(loader)
+        next(batches)
+    sampler.batch()
+    next(batches)
+    (items,) = next(batches)
+    for _ in range(2):  # what is refused changes nothing
+        with pytest.raises(RuntimeError, match="these are not the items of batch 2 of 25: batch.. was left out, or"):
+            sampler.batch(items.int())
+    sampler.batch()
+    assert sampler.batch(items.numpy())[0].tolist() == items.tolist()
+    with pytest.raises(ValueError, match=r"index\[0\] is 200: it must be 0 to 199"):
+        next(batches)
+        sampler.batch([200])
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_one_loop_at_a_time(workers):
+    data = TensorDataset(torch.arange(200))
+    sampler = ImportanceBatchSampler(data, 8)
+    loader = DataLoader(data, batch_sampler=sampler, num_workers=workers)
+    with pytest.raises(RuntimeError, match="another loop over this sampler has begun: one at a time"):
+        for (items,) in loader:
+            sampler.batch(items)
+            assert len(run(sampler, loader=loader)) == 25
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        for stop in (3, 1, None, 2, None):
+            run(sampler, stop=stop, loader=loader)
+    assert sampler.epoch == 3
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_a_glance_after_loading_keeps_the_place(workers):
+    data = TensorDataset(torch.arange(200))
+    sampler, same = ImportanceBatchSampler(data, 8, seed=3), ImportanceBatchSampler(data, 8)
+    run(sampler, workers, stop=20)
+    same.load_state_dict(sampler.state_dict())
+    loader = DataLoader(data, batch_sampler=same, num_workers=workers)
+    for _ in range(2):
+        next(iter(loader))
+    sampler.load_state_dict(sampler.state_dict())
+    rest = run(same, loader=loader)
+    assert len(rest) == 5 and equal(rest, run(sampler, workers)) and same.epoch == 1
+    assert equal(run(same, loader=loader), run(sampler, workers))
 
 
 def test_a_loop_that_forgets_batch_ends():
@@ -282,8 +339,8 @@ def test_first_importances_are_not_averaged_with_what_all_items_begin_with(warmu
     assert 0.29 < (sampler._tables[0].probabilities(5) - 0.02) / before < 0.4
 
 
-@pytest.mark.parametrize("techniques", [1, 2])
-def test_what_overflows_is_left_out_where_the_loss_was_scaled(techniques):
+@pytest.mark.parametrize("techniques, wrong", [(1, float("inf")), (1, float("nan")), (2, float("inf"))])
+def test_what_overflows_is_left_out_where_the_loss_was_scaled(techniques, wrong):
     sampler = ImportanceBatchSampler(8, 4, techniques=techniques)
     batches = iter(sampler)
 
@@ -292,7 +349,7 @@ def test_what_overflows_is_left_out_where_the_loss_was_scaled(techniques):
         index, weight = sampler.batch()
         logits = torch.zeros(4, 2, requires_grad=True)
         ((scale or 1.0) * (weight * 2 * logits[:, 0]).mean()).backward()
-        logits.grad[list(bad)] = float("inf")
+        logits.grad[list(bad)] = wrong
         sampler.update_from(logits, scale=scale)
         return index
 
@@ -302,8 +359,45 @@ def test_what_overflows_is_left_out_where_the_loss_was_scaled(techniques):
     q[left_out] = 1  # with which all begin
     assert numpy.allclose(sampler._tables[0].probabilities(), 0.8 * q / q.sum() + 0.025)
     batches = iter(sampler)
-    with pytest.raises(ValueError, match=r"^logits.grad\[1\] is not finite: the loss is not, or a GradScaler"):
+    before = sampler.probabilities()
+    with pytest.raises(ValueError, match=r"^logits.grad\[1\] is not finite: .*; scale=1.0 leaves such items out$"):
         step(bad=[1, 3])
+    assert torch.equal(sampler.probabilities(), before)
+
+
+@pytest.mark.parametrize("techniques", [1, 2])
+def test_without_warmup_the_scale_of_norms_does_not_matter(techniques):
+    """The first report says what the others count as; two tables may have scales of their own."""
+    norms, found = numpy.random.default_rng(2).lognormal(size=1000), []
+    for scales in ([1, 1], [100, 0.001], [0.001, 0.001]):
+        sampler = ImportanceBatchSampler(1000, 50, warmup=None, seed=3, techniques=techniques)
+        for _ in range(10):
+            next(iter(sampler))
+            index, _ = sampler.batch()
+            sampler.update((norms[index, None] * scales)[:, :techniques].squeeze())
+            # Continued, it is not the first report again.
+            sampler.load_state_dict(sampler.state_dict())
+        found.append([table.probabilities() for table in sampler._tables])
+    p = numpy.array(found)
+    assert numpy.allclose(p[1:], p[0], rtol=1e-3)
+    # What most have, for they were not drawn, is the mean's.
+    assert 0.7 < 1000 * numpy.median(p[0]) < 1.3 and p[0].max() > 3 * p[0].min()
+
+
+def test_reports_of_nothing_are_not_the_first():
+    sampler = ImportanceBatchSampler(10, 2, warmup=None, uniform_fraction=0)
+    for importance in ([], [0.0, 0.0], [30.0, 50.0]):
+        sampler.update(importance, range(len(importance)))
+    q = numpy.array([30.0, 50.0] + 8 * [40.0])
+    assert numpy.allclose(sampler.probabilities(), q / q.sum())
+
+
+def test_probabilities_are_of_the_next_draw():
+    sampler = ImportanceBatchSampler(4, 2, techniques=2, uniform_fraction=0.5)
+    sampler.update([[1, 4], [1, 0], [1, 0], [1, 0]], range(4))
+    p = sampler.probabilities()
+    assert p.dtype == torch.float32 and torch.allclose(p, torch.tensor([0.4375, 0.1875, 0.1875, 0.1875]))
+    assert repr(sampler) == "ImportanceBatchSampler(4, 2, steps=2, techniques=2, seed=0)"
 
 
 class Other(torch.Tensor):
@@ -346,7 +440,7 @@ def test_gradients_of_logits_are_the_softmaxs(reduction):
     norms = cross_entropy_importance(logits, target)
     derivative = torch.softmax(logits, 1) - torch.nn.functional.one_hot(target, 10)
     assert torch.allclose(norms, derivative.norm(dim=1), rtol=1e-5)
-    table = noisefloor.Table(200, uniform_fraction=0)
+    table = noisefloor.Table(200, importance=numpy.full(200, norms.mean().item()), uniform_fraction=0)
     table.update(index, norms, 0.0)
     sampler._tables[0].uniform_fraction = 0
     assert numpy.allclose(sampler._tables[0].probabilities(), table.probabilities(), rtol=1e-4)
@@ -360,8 +454,9 @@ def test_several_techniques_are_of_groups_of_outputs(techniques, split):
         part = derivative[:, j::techniques]
         if split == "sign":
             part = (derivative if j % 2 == 0 else -derivative).clamp(min=0)[:, j // 2 :: 2]
-        other = noisefloor.Table(200, uniform_fraction=0)
-        other.update(index, part.norm(dim=1), 0.0)
+        norms = part.norm(dim=1)
+        other = noisefloor.Table(200, importance=numpy.full(200, norms.mean().item()), uniform_fraction=0)
+        other.update(index, norms, 0.0)
         table.uniform_fraction = 0
         assert numpy.allclose(table.probabilities(), other.probabilities(), rtol=1e-4)
 
@@ -473,8 +568,8 @@ def _stray(rank, world, file, results):
 
 def test_what_goes_wrong_in_one_process_is_known_to_all(tmp_path):
     (_, kept, p), (_, left_out, same) = together(_stray, 2, str(tmp_path / "meeting"))
-    # Of the importances that all begin with, one is 1 still, and another is not.
-    assert p == same and p[left_out] < p[kept]
+    # Of the importances that all begin with, one is still that of most, and another is not.
+    assert p == same and p[left_out] == max(p, key=p.count) != p[kept]
 
 
 @pytest.mark.parametrize(
@@ -496,6 +591,12 @@ def test_what_goes_wrong_in_one_process_is_known_to_all(tmp_path):
         (lambda s: s.update(torch.tensor([1j, 1])), "importance holds complex64: real numbers"),
         (lambda s: s.update(None), "importance holds object: real numbers"),
         (lambda s: s.update_from(torch.ones(2, 3)), "call logits.retain_grad"),
+        (lambda s: s.update_from((torch.ones(2, 3),)), "logits is a tuple: a tensor is expected"),
+        (lambda s: s.update_from(differentiated(torch.float32, ())), r"logits has the shape \(\): \(batch_size, ...\)"),
+        (lambda s: s.update_from(differentiated(torch.float32, (3,))), r"logits has the shape \(3,\): .* 2 items"),
+        (lambda s: ImportanceBatchSampler("10", 2), "n is '10': an integer"),
+        (lambda s: ImportanceBatchSampler([], 2), "n is 0: it must be 1 to"),
+        (lambda s: ImportanceBatchSampler(10, 2, process_group="all"), "process_group is given, but torch.distributed"),
         (lambda s: s.update_from(differentiated(torch.float32), split="half"), "split is 'half': it must be one of"),
         (lambda s: s.update_from(differentiated(torch.complex64)), "logits holds torch.complex64: real numbers"),
         (lambda s: s.load_state_dict(ImportanceBatchSampler(9, 2).state_dict()), "another sampler's: it has .*'n': 9"),
@@ -527,9 +628,9 @@ def test_a_refused_importance_of_one_technique_changes_no_other(bad):
     assert all(numpy.array_equal(a["table"], b["table"]) for a, b in zip(before, after))
 
 
-def differentiated(kind):
+def differentiated(kind, shape=(2, 3)):
     """Outputs after a backward pass."""
-    logits = torch.ones(2, 3, dtype=kind, requires_grad=True)
+    logits = torch.ones(shape, dtype=kind, requires_grad=True)
     logits.abs().sum().backward()
     return logits
 
@@ -555,9 +656,19 @@ def test_groups_have_outputs(techniques, split, said):
 
 
 def test_labels_that_are_no_class_and_other_shapes_are_refused():
-    for label in (-1, 3):
-        with pytest.raises(RuntimeError, match="Class values must be"):
+    for label in (-100, 3):
+        with pytest.raises(ValueError, match=rf"target\[1\] is {label}: it must be 0 to 2"):
             cross_entropy_importance(torch.zeros(2, 3), torch.tensor([0, label]))
+    logits, target = torch.arange(6.0).reshape(2, 3), torch.tensor([0, 2])
+    for kind in (torch.uint8, torch.int16, torch.int32):
+        same = cross_entropy_importance(logits, target.to(kind))
+        assert torch.equal(same, cross_entropy_importance(logits, target))
+    with pytest.raises(TypeError, match="target holds float32: integers are expected"):
+        cross_entropy_importance(torch.zeros(2, 3), torch.zeros(2))
+    with pytest.raises(TypeError, match="logits is a ndarray: a tensor is expected"):
+        cross_entropy_importance(numpy.zeros((2, 3)), torch.tensor([0, 2]))
+    with pytest.raises(TypeError, match="target is a list: a tensor is expected"):
+        cross_entropy_importance(torch.zeros(2, 3), [0, 2])
 
     with pytest.raises(ValueError, match=r"logits has the shape \(2,\): it must be \(batch, classes\)"):
         cross_entropy_importance(torch.zeros(2), torch.tensor([0, 1]))
