@@ -17,9 +17,9 @@
 //!   6).
 //! - [`rng`]: a small generator with the same stream on every target.
 //!
-//! Nothing allocates, and nothing panics on any input: errors are values. The same input gives the same bits on every
-//! target. Chapters and equations are those of C. Salaün, "Toward Improving Monte Carlo Estimator for Rendering and
-//! Machine Learning", 2025.
+//! Nothing allocates, and nothing panics on any input: errors are values. (At `opt-level` "z" compilers may keep checks
+//! that never fail.) The same input gives the same bits on every target. Chapters and equations are those of
+//! C. Salaün, "Toward Improving Monte Carlo Estimator for Rendering and Machine Learning", 2025.
 //!
 //! ```
 //! # #[cfg(feature = "control-variate")] {

@@ -29,7 +29,8 @@ impl<'a> Batch<'a> {
     /// - `technique[s]`: the one that drew it, below J. n_j is the number of its samples; one that drew nothing has no
     ///   part in the batch, whatever its probabilities.
     ///
-    /// Errors: [`Error::Range`] for arguments outside these ranges or a wrong length; [`Error::NoSamples`] for an empty
+    /// # Errors
+    /// [`Error::Range`] for arguments outside these ranges or a wrong length; [`Error::NoSamples`] for an empty
     /// batch; [`Error::NotFinite`] for a probability that is NaN or infinite.
     pub fn new(items: u32, techniques: usize, pdf: &'a [f32], technique: &'a [u32]) -> Result<Batch<'a>, Error> {
         ensure((1..=MAX_TECHNIQUES).contains(&techniques) && items > 0, Error::Range)?;

@@ -62,7 +62,8 @@ pub struct Gradient<M> {
 impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
     /// No batches yet.
     ///
-    /// Errors: [`Error::Range`] for techniques outside 1..=16 or no parameters; [`Error::Memory`] for less than
+    /// # Errors
+    /// [`Error::Range`] for techniques outside 1..=16 or no parameters; [`Error::Memory`] for less than
     /// [`gradient_len`]`(techniques, parameters)` elements of memory.
     pub fn new(memory: M, techniques: usize, parameters: usize) -> Result<Self, Error> {
         let mut gradient = Gradient::resume(memory, System::new(techniques), parameters)?;
@@ -72,7 +73,8 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
 
     /// Takes up averages that `memory` already holds, with the [`Gradient::system`] that belongs to them.
     ///
-    /// Errors: as for [`Gradient::new`].
+    /// # Errors
+    /// As for [`Gradient::new`].
     pub fn resume(memory: M, system: System, parameters: usize) -> Result<Self, Error> {
         match gradient_len(system.techniques, parameters) {
             0 => Err(Error::Range),
@@ -101,7 +103,8 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
     /// Sums are in `f32`, added in an order that does not depend on the processor. An estimate beyond the range of
     /// `f32` becomes the largest finite one. The gradients are read twice, once to see that they are finite.
     ///
-    /// Errors, which leave everything as it was: [`Error::Range`] for a wrong length, number of techniques, beta or
+    /// # Errors
+    /// These leave everything as it was: [`Error::Range`] for a wrong length, number of techniques, beta or
     /// ridge, or where gradients over probabilities add up beyond a quarter of the range of `f32`; [`Error::NotFinite`]
     /// for NaN or infinity among the gradients, beta or ridge; [`Error::Unsupported`] for [`Solver::Progressive`].
     // Inlined into copies for wider registers.

@@ -36,7 +36,8 @@ pub struct Softmax<'a> {
 impl<'a> Softmax<'a> {
     /// Of the logits of an item whose class is `label`.
     ///
-    /// Errors: [`Error::Range`] for a label that does not exist, as where there are no logits; [`Error::NotFinite`] for
+    /// # Errors
+    /// [`Error::Range`] for a label that does not exist, as where there are no logits; [`Error::NotFinite`] for
     /// a logit that is NaN or infinite.
     pub fn new(logits: &'a [f32], label: usize) -> Result<Self, Error> {
         let own = f64::from(*logits.get(label).ok_or(Error::Range)?);

@@ -19,7 +19,8 @@ pub const DEFAULT_BETA: f32 = 2.0;
 ///
 /// The weights of all techniques sum to one. Where every n_k p_k is 0, so that x cannot have been drawn, each is 0.
 ///
-/// Errors: [`Error::Range`] for slices that are not of one length in 1..=16, a technique that does not exist or a
+/// # Errors
+/// [`Error::Range`] for slices that are not of one length in 1..=16, a technique that does not exist or a
 /// negative density; [`Error::NotFinite`] for a NaN.
 ///
 /// ```

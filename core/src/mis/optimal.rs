@@ -79,7 +79,8 @@ pub struct OptimalMis<M> {
 impl<M: AsRef<[f64]>> OptimalMis<M> {
     /// Takes up the sums that `memory` already holds, made earlier with the same `counts` and `integrals`.
     ///
-    /// Errors: as for [`OptimalMis::new`].
+    /// # Errors
+    /// As for [`OptimalMis::new`].
     pub fn resume(memory: M, counts: &[u32], integrals: usize) -> Result<Self, Error> {
         let needed = len(counts.len(), integrals);
         ensure(needed > 0 && !counts.contains(&0), Error::Range)?;
@@ -104,7 +105,8 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     /// Nothing is changed: the same call gives the same answer, and more samples may follow. An estimate beyond the
     /// range of `f32` becomes the largest finite one.
     ///
-    /// Errors: [`Error::Range`] for a wrong length or a ridge outside [`RIDGE_RANGE`](super::RIDGE_RANGE);
+    /// # Errors
+    /// [`Error::Range`] for a wrong length or a ridge outside [`RIDGE_RANGE`](super::RIDGE_RANGE);
     /// [`Error::NotFinite`] for a ridge that is NaN or infinite; [`Error::NoSamples`].
     pub fn solve(&self, solver: Solver, estimate: &mut [f32]) -> Result<(), Error> {
         ensure(estimate.len() == self.integrals, Error::Range)?;
@@ -167,7 +169,8 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
 impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// Empty sums for techniques that draw `counts[j]` samples each, and `integrals` functions.
     ///
-    /// Errors: [`Error::Range`] unless there are 1..=16 counts, all at least 1, and at least one integral;
+    /// # Errors
+    /// [`Error::Range`] unless there are 1..=16 counts, all at least 1, and at least one integral;
     /// [`Error::Memory`] for less than [`len`]`(counts.len(), integrals)` elements of memory.
     pub fn new(memory: M, counts: &[u32], integrals: usize) -> Result<Self, Error> {
         let mut omis = OptimalMis::resume(memory, counts, integrals)?;
@@ -183,7 +186,8 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// Adds one sample that `technique` drew: `pdf[j]` of each technique at its point, and the value f of each
     /// integrand there (not divided by any density).
     ///
-    /// Errors, which leave the sums as they were: [`Error::Range`] for wrong lengths, a technique that does not exist,
+    /// # Errors
+    /// These leave the sums as they were: [`Error::Range`] for wrong lengths, a technique that does not exist,
     /// a negative density, or a density of 0 for the technique that drew the sample; [`Error::NotFinite`] for NaN or
     /// infinity among the densities (combine delta distributions outside) or values.
     pub fn add(&mut self, technique: usize, pdf: &[f32], value: &[f32]) -> Result<(), Error> {
@@ -219,7 +223,8 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// Before the first call alpha is 0, the balance heuristic. [`Solver::Balance`] returns to that. Call it between
     /// whole rounds, whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
     ///
-    /// Errors, which change nothing: [`Error::Unsupported`] for [`Solver::Progressive`]; others as for
+    /// # Errors
+    /// These change nothing: [`Error::Unsupported`] for [`Solver::Progressive`]; others as for
     /// [`OptimalMis::solve`].
     pub fn next_batch(&mut self, solver: Solver) -> Result<(), Error> {
         ensure(solver != Solver::Progressive, Error::Unsupported)?;
@@ -235,8 +240,10 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
 
     /// Multiplies all sums by `beta` in 0..=1, so that older samples count for less: for integrals that drift.
     ///
-    /// With beta = 0 nothing is left but the progressive estimator's alpha. Errors: [`Error::NotFinite`] for NaN or
-    /// infinity, [`Error::Range`] outside 0..=1.
+    /// With beta = 0 nothing is left but the progressive estimator's alpha.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] for NaN or infinity, [`Error::Range`] outside 0..=1.
     pub fn decay(&mut self, beta: f32) -> Result<(), Error> {
         check_part(beta)?;
         let sums = sums_len(self.techniques, self.integrals);
@@ -246,7 +253,8 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
 
     /// Adds the samples of `other`, of another thread or pass. The progressive estimator's alpha stays this one's.
     ///
-    /// Errors: [`Error::Mismatch`] unless both have the same counts and number of integrals.
+    /// # Errors
+    /// [`Error::Mismatch`] unless both have the same counts and number of integrals.
     pub fn merge<N: AsRef<[f64]>>(&mut self, other: &OptimalMis<N>) -> Result<(), Error> {
         let like = self.techniques == other.techniques && self.integrals == other.integrals;
         ensure(like && is_same(&self.counts, &other.counts), Error::Mismatch)?;

@@ -39,7 +39,8 @@ impl Default for Solver {
 impl Solver {
     /// Checks the ridge.
     ///
-    /// Errors: [`Error::NotFinite`] for a ridge that is NaN or infinite, [`Error::Range`] outside [`RIDGE_RANGE`].
+    /// # Errors
+    /// [`Error::NotFinite`] for a ridge that is NaN or infinite, [`Error::Range`] outside [`RIDGE_RANGE`].
     pub fn check(self) -> Result<(), Error> {
         match self {
             Solver::Ridge(ridge) if !ridge.is_finite() => Err(Error::NotFinite),

@@ -18,7 +18,8 @@ use crate::real::Real;
 ///   `alpha`: finite; all of one length in 1..=16.
 /// - `value`: f(x), finite (not divided by any density).
 ///
-/// Errors: [`Error::Range`] for arguments outside these ranges or a term beyond the range of `f32`;
+/// # Errors
+/// [`Error::Range`] for arguments outside these ranges or a term beyond the range of `f32`;
 /// [`Error::NotFinite`] for NaN or infinity among them.
 ///
 /// ```

@@ -28,7 +28,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     /// the time of ten updates or so, and exclusive access. Where a few items have nearly all of the sum, the table is
     /// built again without them, which takes time for every item.
     ///
-    /// Errors, which change nothing: [`Error::Range`] for more draws than items, or another number of
+    /// # Errors
+    /// These change nothing: [`Error::Range`] for more draws than items, or another number of
     /// weights; [`Error::NoSamples`] where the uniform fraction is 0 and fewer items have an importance above 0.
     #[inline]
     pub fn draw_distinct(

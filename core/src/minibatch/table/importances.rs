@@ -83,7 +83,8 @@ pub struct Table<I, S, K = Portable> {
 impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// Takes up the memory that a table of this state has used, all of it: its length says where things are.
     ///
-    /// Errors: [`Error::Memory`] if it is too small for the items, [`Error::Range`] for a state that no table has. The
+    /// # Errors
+    /// [`Error::Memory`] if it is too small for the items, [`Error::Range`] for a state that no table has. The
     /// contents are not checked: if they are not what that table left there, draws are still of items that exist, but
     /// not as often as they should be, and weights are any numbers.
     pub fn resume(importance: I, sums: S, state: State) -> Result<Self, Error> {
@@ -113,7 +114,8 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// of B draws of [`Table::draw_distinct`] above that and (B - 1) / N. 0 draws by importance alone, 1 uniformly.
     /// Small fractions let weights explode when an importance has become out of date.
     ///
-    /// Errors: [`Error::NotFinite`], [`Error::Range`].
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::Range`].
     pub fn set_uniform_fraction(&mut self, fraction: f32) -> Result<(), Error> {
         check_part(fraction)?;
         // Turns -0 into 0.
@@ -155,7 +157,8 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
 
     /// Writes the probabilities of some items; elements of `probability` beyond them stay as they are.
     ///
-    /// Errors: [`Error::Range`] for an item that does not exist, or fewer elements than items; [`Error::NoSamples`] as
+    /// # Errors
+    /// [`Error::Range`] for an item that does not exist, or fewer elements than items; [`Error::NoSamples`] as
     /// for [`Table::draw`].
     pub fn probabilities(&self, index: &[u32], probability: &mut [f32]) -> Result<(), Error> {
         ensure(probability.len() >= index.len(), Error::Range)?;
@@ -207,7 +210,8 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
 impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S> {
     /// A table of `items` items, with these importances or, without, 1 for each, and [`DEFAULT_UNIFORM_FRACTION`].
     ///
-    /// Errors: [`Error::Range`] for no items, another number of importances or a negative one; [`Error::NotFinite`] for
+    /// # Errors
+    /// [`Error::Range`] for no items, another number of importances or a negative one; [`Error::NotFinite`] for
     /// NaN or infinity; [`Error::NoSamples`] if all are 0; [`Error::Memory`] for less than [`importance_len`] and
     /// [`sums_len`].
     pub fn new(importance: I, sums: S, items: u32, values: Option<&[f32]>) -> Result<Self, Error> {

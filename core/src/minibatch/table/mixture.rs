@@ -21,7 +21,8 @@ impl Mixture {
         Mixture { sum: 0, items, tree: 0.0, uniform: 1.0 }
     }
 
-    /// Errors: [`Error::NoSamples`] if every weight is 0 and no draw uniform.
+    /// # Errors
+    /// [`Error::NoSamples`] if every weight is 0 and no draw uniform.
     pub(super) fn of(sum: i64, items: u32, uniform: f64) -> Result<Mixture, Error> {
         let (tree, uniform) = shares(sum > 0, uniform)?;
         Ok(Mixture { sum, items, tree, uniform })
@@ -56,7 +57,8 @@ impl Mixture {
 
 /// The probability of each way: by importance, if there is any, and uniformly.
 ///
-/// Errors: [`Error::NoSamples`] if there is neither.
+/// # Errors
+/// [`Error::NoSamples`] if there is neither.
 pub(super) fn shares(is_any_important: bool, uniform: f64) -> Result<(f64, f64), Error> {
     match (is_any_important, uniform > 0.0) {
         (true, _) => Ok((1.0 - uniform, uniform)),

@@ -26,7 +26,8 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// Writes the table to exactly [`saved_len`] bytes. A table loaded from them draws the same items from the same
     /// generator.
     ///
-    /// Errors: [`Error::Length`] for another number of bytes.
+    /// # Errors
+    /// [`Error::Length`] for another number of bytes.
     pub fn save(&self, bytes: &mut [u8]) -> Result<(), Error> {
         let State { scale, items, uniform_fraction } = self.state;
         ensure(bytes.len() == saved_len(items), Error::Length)?;
@@ -43,7 +44,8 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
 
 /// The number of items in a saved table, to make memory for it. Only the header and the length are looked at.
 ///
-/// Errors: [`Error::Foreign`] for other bytes, [`Error::Version`] for a newer format, [`Error::Length`],
+/// # Errors
+/// [`Error::Foreign`] for other bytes, [`Error::Version`] for a newer format, [`Error::Length`],
 /// [`Error::Corrupt`] for a version or a number of items that no table has.
 pub fn saved_items(bytes: &[u8]) -> Result<u32, Error> {
     ensure(is_same(bytes, &MAGIC), Error::Foreign)?;
@@ -59,7 +61,8 @@ pub fn saved_items(bytes: &[u8]) -> Result<u32, Error> {
 impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S> {
     /// A table as it was when it was saved, in memory for at least as many items.
     ///
-    /// Errors, before which no memory is touched: [`Error::Foreign`] for other bytes, [`Error::Version`],
+    /// # Errors
+    /// Before any of these no memory is touched: [`Error::Foreign`] for other bytes, [`Error::Version`],
     /// [`Error::Length`], [`Error::Corrupt`] if they are damaged; [`Error::Memory`].
     pub fn load(importance: I, sums: S, bytes: &[u8]) -> Result<Self, Error> {
         let mut table = Table::resume(importance, sums, check(bytes)?)?;

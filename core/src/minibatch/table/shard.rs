@@ -20,7 +20,8 @@ pub struct Shard {
 impl Shard {
     /// What all of these are together; every process must add them in the same order, for the same bits.
     ///
-    /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative sum, one of no items, or 2^53 items or more;
+    /// # Errors
+    /// [`Error::NotFinite`]; [`Error::Range`] for a negative sum, one of no items, or 2^53 items or more;
     /// [`Error::NoSamples`] if there is no item.
     pub fn sum(shards: impl IntoIterator<Item = Shard>) -> Result<Shard, Error> {
         let mut all = Shard::default();
@@ -38,7 +39,8 @@ impl Shard {
 
     /// The probability that a draw from `all` falls to this part by importance, and uniformly.
     ///
-    /// Errors: [`Error::NoSamples`] if nothing can be drawn.
+    /// # Errors
+    /// [`Error::NoSamples`] if nothing can be drawn.
     fn ways(&self, all: &Shard, uniform_fraction: f64) -> Result<(f64, f64), Error> {
         let (tree, uniform) = shares(all.importance > 0.0, uniform_fraction)?;
         // Without importance `tree` is 0.
@@ -52,7 +54,8 @@ impl Shard {
 ///
 /// Every process calls it with the same shards and a generator of the same seed, and so learns its own part.
 ///
-/// Errors: as for [`Shard::sum`]; [`Error::Range`] for different lengths or a fraction outside 0..=1;
+/// # Errors
+/// As for [`Shard::sum`]; [`Error::Range`] for different lengths or a fraction outside 0..=1;
 /// [`Error::NotFinite`]; [`Error::NoSamples`] if every importance and the fraction are 0.
 ///
 /// ```
@@ -111,7 +114,8 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     ///
     /// All tables must have the same uniform fraction. How many items each process draws, [`allocate`] says.
     ///
-    /// Errors: [`Error::Range`] for another number of weights, or if `all` is less than this table alone, or 2^53
+    /// # Errors
+    /// [`Error::Range`] for another number of weights, or if `all` is less than this table alone, or 2^53
     /// items; [`Error::NotFinite`]; [`Error::NoSamples`] if nothing can be drawn from any, or from this table and
     /// `index` is not empty. Where `all` dwarfs this table a weight may be infinite.
     #[inline]

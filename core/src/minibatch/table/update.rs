@@ -4,7 +4,7 @@ use super::importances::{Table, check_importances};
 use super::kernel::{ARITY, Block, Kernel, Portable, prefetch};
 use super::tree::{self, CHILDREN, Node};
 use crate::error::{Error, check_part, ensure};
-use crate::matrix::{first_mut, from};
+use crate::matrix::{first_mut, from, halves};
 use crate::real::power_of_two;
 
 /// How many changes go up the tree together.
@@ -26,7 +26,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     /// a new scale, which takes time for every item; else a change costs the same few nanoseconds however many items
     /// there are.
     ///
-    /// Errors, which change nothing: [`Error::Range`] for different lengths, an item that does not exist, a negative
+    /// # Errors
+    /// These change nothing: [`Error::Range`] for different lengths, an item that does not exist, a negative
     /// importance, or a momentum outside 0..=1; [`Error::NotFinite`].
     #[inline]
     pub fn update(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
@@ -38,7 +39,11 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
         let momentum = momentum + 0.0;
         let fresh = 1.0 - momentum;
         let mut in_range = true;
-        for (index, importance) in index.chunks(CHUNK).zip(importance.chunks(CHUNK)) {
+        let mut left = importance;
+        for index in index.chunks(CHUNK) {
+            // Not zipped with the other's chunks: in small code the count of those divides by a length that may be 0.
+            let (importance, after) = halves(left, index.len());
+            left = after;
             for &item in index {
                 let which = item as usize / ARITY;
                 prefetch::<K, _>(self.blocks(), which);
@@ -54,7 +59,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
 
     /// Adds items behind the last. Takes the time of an update for each, or of building the table if they are many.
     ///
-    /// Errors, which change nothing: [`Error::Memory`] if there is no room; [`Error::Range`] for a negative importance;
+    /// # Errors
+    /// These change nothing: [`Error::Memory`] if there is no room; [`Error::Range`] for a negative importance;
     /// [`Error::NotFinite`].
     pub fn append(&mut self, importance: &[f32]) -> Result<(), Error> {
         check_importances(importance)?;
@@ -82,7 +88,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     /// Adds `epsilon` to every importance, as Algorithm 3 does after an epoch so that no item is forgotten. Exact:
     /// every importance is the f32 sum. Takes time for every item; the uniform fraction does the same for nothing.
     ///
-    /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative number.
+    /// # Errors
+    /// [`Error::NotFinite`]; [`Error::Range`] for a negative number.
     #[inline]
     pub fn add_epsilon(&mut self, epsilon: f32) -> Result<(), Error> {
         check_importances(&[epsilon])?;
