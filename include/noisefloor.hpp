@@ -5,7 +5,8 @@
 // differences.
 //
 // A call that fails throws noisefloor::error. With NOISEFLOOR_NO_EXCEPTIONS defined, or exceptions turned off in the
-// compiler, the same functions return a noisefloor::result<T> instead: see `returned`.
+// compiler, the same functions return a noisefloor::result<T> instead: see `returned`. Lengths of arrays that do not
+// agree are status::length; every call with an object that was not made yet is status::state.
 #ifndef NOISEFLOOR_HPP
 #define NOISEFLOOR_HPP
 
@@ -140,30 +141,56 @@ inline const char *check(const nf_table &what) noexcept { return nf_check(NF_CHE
 inline const char *check(const nf_tile &what) noexcept { return nf_check(NF_CHECK_TILE, &what); }
 inline const char *check(const nf_tile_sampler &what) noexcept { return nf_check(NF_CHECK_TILE_SAMPLER, &what); }
 
+namespace detail {
+// How a call ended, and which field is to blame, if one is.
+struct outcome {
+    outcome(nf_status code_, const char *words_ = nullptr) noexcept : code(code_), words(words_) {}
+    nf_status code;
+    const char *words;
+};
+// Blames the first of `what` that is out of its range.
+template <class... What> outcome blame(nf_status code, const What &...what) noexcept
+{
+    const char *words = nullptr;
+    if (code == NF_ERR_RANGE || code == NF_ERR_NOT_FINITE || code == NF_ERR_UNSUPPORTED)
+        static_cast<void>((((words = check(what)) != nullptr) || ...));
+    return {code, words};
+}
+// Why lengths do not agree. With a configuration that is out of its range they could not.
+template <class... What> nf_status lengths(const What &...what) noexcept
+{
+    return ((check(what) == nullptr) && ...) ? NF_ERR_LENGTH : NF_ERR_RANGE;
+}
+// What a call with an object returned; every call with one that was not made yet is NF_ERR_STATE.
+inline nf_status made(const void *object, nf_status code) noexcept { return object != nullptr ? code : NF_ERR_STATE; }
+} // namespace detail
+
 #ifndef NOISEFLOOR_NO_EXCEPTIONS
 
 class error final : public std::exception {
 public:
-    explicit error(status code) noexcept : code_(code) {}
+    // `words`: what check() says, or another static sentence; nullptr for the code's message().
+    explicit error(status code, const char *words = nullptr) noexcept : code_(code), words_(words) {}
     status code() const noexcept { return code_; }
-    const char *what() const noexcept override { return message(code_); }
+    const char *what() const noexcept override { return words_ != nullptr ? words_ : message(code_); }
 
 private:
     status code_;
+    const char *words_;
 };
 
 // What a function that computes a T returns: the T.
 template <class T> using returned = T;
 
 namespace detail {
-inline void finish(nf_status code)
+inline void finish(const outcome &of)
 {
-    if (code != NF_OK)
-        throw error(static_cast<status>(code));
+    if (of.code != NF_OK)
+        throw error(static_cast<status>(of.code), of.words);
 }
-template <class T> T finish(nf_status code, const T &value)
+template <class T> T finish(const outcome &of, const T &value)
 {
-    finish(code);
+    finish(of);
     return value;
 }
 } // namespace detail
@@ -194,10 +221,10 @@ template <> struct [[nodiscard]] result<void> {
 template <class T> using returned = result<T>;
 
 namespace detail {
-inline result<void> finish(nf_status code) noexcept { return {static_cast<status>(code)}; }
-template <class T> result<T> finish(nf_status code, const T &value) noexcept
+inline result<void> finish(const outcome &of) noexcept { return {static_cast<status>(of.code)}; }
+template <class T> result<T> finish(const outcome &of, const T &value) noexcept
 {
-    return {static_cast<status>(code), value};
+    return {static_cast<status>(of.code), value};
 }
 } // namespace detail
 
@@ -363,7 +390,7 @@ public:
     {
         nf_cv_rectangle all{};
         const nf_status code = nf_cv_image_needed(this, &all);
-        return detail::finish(code, all);
+        return detail::finish(detail::blame(code, *this), all);
     }
 
     // Pixels in no order: nf_cv_image::unordered.
@@ -431,17 +458,17 @@ inline nf_status count(const nf_cv_config &how, const samples &what, std::size_t
 {
     const std::size_t channels = how.channels, stride = how.stride == 0 ? how.dims : how.stride;
     if (channels == 0 || what.f.size() % channels != 0)
-        return NF_ERR_RANGE;
+        return lengths(how);
     n = what.f.size() / channels;
     if (n == 0)
         return NF_ERR_NO_SAMPLES;
     // Products that overflow would say "enough": divide instead.
     if (stride == 0 || what.u.size() < how.dims || (what.u.size() - how.dims) / stride < n - 1 ||
         (what.u.size() - 1) / stride > n - 1)
-        return NF_ERR_RANGE;
+        return lengths(how);
     const std::size_t used = how.controls;
     if (what.control_integrals.size() != used || what.controls.size() % n != 0 || what.controls.size() / n != used)
-        return NF_ERR_RANGE;
+        return lengths(how);
     return NF_OK;
 }
 // For the C functions: n samples of each integral.
@@ -455,7 +482,7 @@ inline nf_cv_samples view(const samples &what, std::size_t n) noexcept
 }
 } // namespace detail
 
-// nf_cv_estimate() of one integral: the estimate from all samples. status::range also for lengths that do not agree.
+// nf_cv_estimate() of one integral: the estimate from all samples.
 inline returned<nf_estimate> estimate(const nf_cv_config &how, const samples &what, memory workspace)
 {
     nf_estimate out{};
@@ -464,7 +491,7 @@ inline returned<nf_estimate> estimate(const nf_cv_config &how, const samples &wh
     const nf_cv_samples all = detail::view(what, n);
     if (code == NF_OK)
         code = nf_cv_estimate(&how, &all, 1, workspace.data(), workspace.bytes(), &out);
-    return detail::finish(code, out);
+    return detail::finish(detail::blame(code, how), out);
 }
 
 // nf_cv_estimate() of as many integrals as `out` has room for, at least one, from as many samples of each.
@@ -474,12 +501,12 @@ inline returned<void> estimate_each(const nf_cv_config &how, const samples &what
     std::size_t n = 0;
     nf_status code = detail::count(how, what, n);
     if (code == NF_OK && (out.empty() || n % out.size() != 0))
-        code = NF_ERR_RANGE;
+        code = detail::lengths(how);
     if (code == NF_OK) {
         const nf_cv_samples all = detail::view(what, n / out.size());
         code = nf_cv_estimate(&how, &all, out.size(), workspace.data(), workspace.bytes(), out.data());
     }
-    return detail::finish(code);
+    return detail::finish(detail::blame(code, how));
 }
 
 // nf_cv_gradient_descent(): `coefficients` are the start, and afterwards the solution.
@@ -493,11 +520,11 @@ inline returned<nf_estimate> gradient_descent(const nf_cv_config &how, const sam
     const std::size_t rows = how.color == NF_COLOR_LUMINANCE_RATIO ? 1 : how.channels;
     const std::size_t terms = nf_cv_terms(&how);
     if (code == NF_OK && terms > 0 && coefficients.size() != rows * (terms - 1))
-        code = NF_ERR_RANGE;
+        code = detail::lengths(how, steps);
     if (code == NF_OK)
         code = nf_cv_gradient_descent(&how, &all, &steps, coefficients.data(), workspace.data(), workspace.bytes(),
                                       &out);
-    return detail::finish(code, out);
+    return detail::finish(detail::blame(code, how, steps), out);
 }
 
 // nf_cv_image_estimate(): one estimate for each wanted pixel, from as many samples of each.
@@ -513,12 +540,12 @@ inline returned<void> estimate_image(const nf_cv_config &how, const image &where
                            (!knows || (what.known.size() == what.f.size() &&
                                        what.known_integrals.size() % pixels == 0 &&
                                        what.known_integrals.size() / pixels == how.channels))))
-        code = NF_ERR_RANGE;
+        code = detail::lengths(how, where);
     if (code == NF_OK) {
         const nf_cv_samples all = detail::view(what, n / pixels);
         code = nf_cv_image_estimate(&how, &where, &all, workspace.data(), workspace.bytes(), out.data());
     }
-    return detail::finish(code);
+    return detail::finish(detail::blame(code, how, where));
 }
 
 // A view of an nf_cv_accumulator in caller memory: copying the view does not copy the sums.
@@ -527,13 +554,30 @@ public:
     // Makes an empty accumulator in `where`, or empties the one that is there.
     static returned<accumulator> create(const nf_cv_config &how, memory where)
     {
-        accumulator made(nullptr, how);
-        return detail::finish(nf_cv_accumulator_init(where.data(), where.bytes(), &how, &made.handle_), made);
+        accumulator made(how);
+        const nf_status code = nf_cv_accumulator_init(where.data(), where.bytes(), &how, &made.handle_);
+        return detail::finish(detail::blame(code, how), made);
     }
     template <class C, class = detail::if_ends<C>>
     static returned<accumulator> create(const nf_cv_config &, C &&) = delete;
-    // A view of one made earlier with the same configuration.
-    accumulator(nf_cv_accumulator *handle, const nf_cv_config &how) noexcept : handle_(handle), how_(how) {}
+    // A view of the one that is in `where`, bytes copied there say; status::mismatch if it was made with another
+    // configuration. `scratch` is overwritten. Both are of config::accumulator_size() bytes.
+    static returned<accumulator> resume(const nf_cv_config &how, memory where, memory scratch)
+    {
+        accumulator found(how), empty(how);
+        nf_cv_accumulator *const there = static_cast<nf_cv_accumulator *>(where.data());
+        nf_status code = nf_cv_accumulator_init(scratch.data(), scratch.bytes(), &how, &empty.handle_);
+        if (code == NF_OK && where.bytes() < nf_cv_accumulator_size(&how, nullptr))
+            code = NF_ERR_MEMORY;
+        // Only what was made with one configuration can be merged.
+        if (code == NF_OK)
+            code = nf_cv_accumulator_merge(empty.handle_, there);
+        if (code == NF_OK)
+            found.handle_ = there;
+        return detail::finish(detail::blame(code, how), found);
+    }
+    template <class C, class = detail::if_ends<C>>
+    static returned<accumulator> resume(const nf_cv_config &, C &&, memory) = delete;
     accumulator() noexcept = default;
 
     returned<void> add(const samples &what)
@@ -543,20 +587,24 @@ public:
         const nf_cv_samples all = detail::view(what, n);
         if (code == NF_OK)
             code = nf_cv_accumulator_add(handle_, &all);
-        return detail::finish(code);
+        return detail::finish(detail::made(handle_, code));
     }
     returned<void> merge(const accumulator &other)
     {
-        return detail::finish(nf_cv_accumulator_merge(handle_, other.handle_));
+        const nf_status code = nf_cv_accumulator_merge(handle_, other.handle_);
+        return detail::finish(detail::made(handle_, detail::made(other.handle_, code)));
     }
     returned<nf_estimate> estimate(memory workspace) const
     {
         nf_estimate out{};
-        return detail::finish(nf_cv_accumulator_estimate(handle_, workspace.data(), workspace.bytes(), &out), out);
+        const nf_status code = nf_cv_accumulator_estimate(handle_, workspace.data(), workspace.bytes(), &out);
+        return detail::finish(detail::made(handle_, code), out);
     }
     nf_cv_accumulator *handle() const noexcept { return handle_; }
 
 private:
+    explicit accumulator(const nf_cv_config &how) noexcept : how_(how) {}
+
     nf_cv_accumulator *handle_ = nullptr;
     nf_cv_config how_{};
 };
@@ -564,7 +612,7 @@ private:
 enum class sampling : std::uint32_t { independent = NF_SAMPLING_INDEPENDENT, stratified = NF_SAMPLING_STRATIFIED };
 
 // nf_recommend(): which estimator and which tile to use for `spp` samples per pixel of `dims` coordinates, each of so
-// many nanoseconds; infinity compares errors at equal samples.
+// many nanoseconds; infinity takes each fit that pays at some cost.
 inline returned<nf_recommendation> recommend(std::uint32_t dims, std::uint32_t spp, sampling kind, bool can_share,
                                              float sample_cost = std::numeric_limits<float>::infinity())
 {
@@ -587,16 +635,16 @@ struct point {
 };
 
 namespace detail {
-inline bool fits(const point &at) noexcept
+inline nf_status fits(const point &at) noexcept
 {
-    return at.pdf.size() == at.counts.size() && at.pdf.size() <= max_techniques;
+    return at.pdf.size() != at.counts.size() ? NF_ERR_LENGTH : at.pdf.size() <= max_techniques ? NF_OK : NF_ERR_RANGE;
 }
 inline std::uint32_t techniques(const point &at) noexcept { return static_cast<std::uint32_t>(at.pdf.size()); }
 inline returned<float> weight(std::uint32_t heuristic, float parameter, const point &at, std::uint32_t technique)
 {
     float weight = 0;
-    nf_status code = NF_ERR_RANGE;
-    if (fits(at))
+    nf_status code = fits(at);
+    if (code == NF_OK)
         code = nf_mis_weight(heuristic, parameter, at.pdf.data(), at.counts.data(), techniques(at), technique, &weight);
     return noisefloor::detail::finish(code, weight);
 }
@@ -622,8 +670,8 @@ inline returned<float> optimal_contribution(const point &at, std::uint32_t techn
                                             float value)
 {
     float term = 0;
-    nf_status code = NF_ERR_RANGE;
-    if (detail::fits(at) && alpha.size() == at.pdf.size())
+    nf_status code = alpha.size() == at.pdf.size() ? detail::fits(at) : NF_ERR_LENGTH;
+    if (code == NF_OK)
         code = nf_mis_optimal_contribution(at.pdf.data(), at.counts.data(), detail::techniques(at), technique,
                                            alpha.data(), value, &term);
     return noisefloor::detail::finish(code, term);
@@ -657,7 +705,10 @@ public:
             made.integrals_ = integrals;
             code = nf_omis_init(where.data(), where.bytes(), made.techniques_, integrals, counts.data(), &made.handle_);
         }
-        return detail::finish(code, made);
+        nf_omis_arguments all{};
+        all.counts = counts.data(), all.techniques = static_cast<std::uint32_t>(counts.size());
+        all.integrals = integrals;
+        return detail::finish(detail::blame(code, all), made);
     }
     template <class C, class = detail::if_ends<C>>
     static returned<optimal_mis> create(span<const std::uint32_t>, std::uint32_t, C &&) = delete;
@@ -667,33 +718,35 @@ public:
     returned<void> add(std::uint32_t technique, span<const float> pdf, span<const float> value)
     {
         const bool fits = pdf.size() == techniques_ && value.size() == integrals_;
-        return detail::finish(fits ? nf_omis_add(handle_, technique, pdf.data(), value.data()) : NF_ERR_RANGE);
+        return finish(fits ? nf_omis_add(handle_, technique, pdf.data(), value.data()) : NF_ERR_LENGTH);
     }
     // out[integrals]
     returned<void> solve(span<float> out, solver how = solver::ridge, float ridge = 0.0f) const
     {
         const bool fits = out.size() == integrals_;
-        return detail::finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, out.data(), nullptr)
-                                   : NF_ERR_RANGE);
+        return finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, out.data(), nullptr)
+                           : NF_ERR_LENGTH);
     }
     // out[integrals * techniques], an integral after the other
     returned<void> alpha(span<float> out, solver how = solver::ridge, float ridge = 0.0f) const
     {
         const bool fits = techniques_ > 0 && out.size() % techniques_ == 0 && out.size() / techniques_ == integrals_;
-        return detail::finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, nullptr, out.data())
-                                   : NF_ERR_RANGE);
+        return finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, nullptr, out.data())
+                           : NF_ERR_LENGTH);
     }
     returned<void> next_batch(solver how = solver::ridge, float ridge = 0.0f, float beta = 1.0f)
     {
-        return detail::finish(nf_omis_next_batch(handle_, static_cast<std::uint32_t>(how), ridge, beta));
+        return finish(nf_omis_next_batch(handle_, static_cast<std::uint32_t>(how), ridge, beta));
     }
     returned<void> merge(const optimal_mis &other)
     {
-        return detail::finish(nf_omis_merge(handle_, other.handle_));
+        return finish(detail::made(other.handle_, nf_omis_merge(handle_, other.handle_)));
     }
     nf_omis *handle() const noexcept { return handle_; }
 
 private:
+    returned<void> finish(nf_status code) const { return detail::finish(detail::made(handle_, code)); }
+
     nf_omis *handle_ = nullptr;
     std::uint32_t techniques_ = 0, integrals_ = 0;
 };
@@ -772,11 +825,11 @@ private:
 };
 
 // nf_sampler_fill(): u[height][width][samples][sum of dims] from samplers of the first pixel and sample, dims[i] from
-// samplers[i]. status::range also for lengths that do not agree.
+// samplers[i].
 inline returned<void> fill(span<const nf_sampler> samplers, span<const std::uint32_t> dims, std::uint32_t width,
                            std::uint32_t height, std::uint32_t samples, span<float> u)
 {
-    return detail::finish(samplers.size() != dims.size() ? NF_ERR_RANGE
+    return detail::finish(samplers.size() != dims.size() ? NF_ERR_LENGTH
                                                          : nf_sampler_fill(samplers.data(), dims.data(), dims.size(),
                                                                            width, height, samples, u.data(), u.size()));
 }
@@ -831,7 +884,7 @@ inline returned<void> fill(span<const nf_tile_sampler> samplers, span<const std:
                            std::uint32_t height, std::uint32_t samples, span<float> u)
 {
     const nf_status code = samplers.size() != dims.size()
-                               ? NF_ERR_RANGE
+                               ? NF_ERR_LENGTH
                                : nf_tile_sampler_fill(samplers.data(), dims.data(), dims.size(), width, height, samples,
                                                       u.data(), u.size());
     return detail::finish(code);
@@ -864,7 +917,7 @@ private:
 // ---- Minibatches ----
 
 // nf_table: the importances of a data set's items, in memory of the caller's. It may be moved, not copied: the memory
-// would be shared. Lengths that do not agree are status::range; an empty `weight` stands for none.
+// would be shared. An empty `weight` stands for none.
 class table {
 public:
     // Bytes.
@@ -911,29 +964,29 @@ public:
                               span<float> weight = {}) const
     {
         const bool fit = fits(index, weight) && all.size() <= UINT32_MAX;
-        return detail::finish(fit ? nf_table_draw_shard(&state_, all.data(), length(all), &random.state(),
-                                                        length(index), index.data(), weight.data())
-                                  : NF_ERR_RANGE);
+        return finish(fit ? nf_table_draw_shard(&state_, all.data(), length(all), &random.state(), length(index),
+                                                index.data(), weight.data())
+                          : NF_ERR_LENGTH);
     }
     returned<void> update(span<const std::uint32_t> index, span<const float> importance, float momentum)
     {
         const bool fits = index.size() == importance.size() && index.size() <= UINT32_MAX;
-        return detail::finish(fits ? nf_table_update(&state_, index.data(), importance.data(), length(index), momentum)
-                                   : NF_ERR_RANGE);
+        return finish(fits ? nf_table_update(&state_, index.data(), importance.data(), length(index), momentum)
+                           : NF_ERR_LENGTH);
     }
     returned<void> set_uniform_fraction(float fraction)
     {
         const bool is_fraction = fraction >= 0.0f && fraction <= 1.0f;
-        if (is_fraction && state_.magic != 0)
+        if (is_fraction && state_.importance != nullptr)
             state_.uniform_fraction = fraction;
-        return detail::finish(!is_fraction ? NF_ERR_RANGE : state_.magic != 0 ? NF_OK : NF_ERR_STATE);
+        return finish(is_fraction ? NF_OK : NF_ERR_RANGE);
     }
-    returned<void> add_epsilon(float epsilon) { return detail::finish(nf_table_add_epsilon(&state_, epsilon)); }
+    returned<void> add_epsilon(float epsilon) { return finish(nf_table_add_epsilon(&state_, epsilon)); }
     returned<void> append(span<const float> importance)
     {
-        return detail::finish(importance.size() <= UINT32_MAX
-                                  ? nf_table_append(&state_, importance.data(), length(importance))
-                                  : NF_ERR_RANGE);
+        return finish(importance.size() <= UINT32_MAX
+                          ? nf_table_append(&state_, importance.data(), length(importance))
+                          : NF_ERR_RANGE);
     }
 
     std::uint32_t items() const noexcept { return state_.items; }
@@ -948,7 +1001,8 @@ public:
     {
         const bool fits = index.size() <= UINT32_MAX && stride > 0 &&
                           (index.empty() || (p.size() > 0 && (p.size() - 1) / stride >= index.size() - 1));
-        return detail::finish(fits ? nf_table_probabilities(&state_, index.data(), length(index), stride, p.data())
+        return finish(fits         ? nf_table_probabilities(&state_, index.data(), length(index), stride, p.data())
+                      : stride > 0 ? NF_ERR_LENGTH
                                    : NF_ERR_RANGE);
     }
     float importance(std::uint32_t item) const noexcept { return item < items() ? state_.importance[item] : 0.0f; }
@@ -961,13 +1015,13 @@ public:
     returned<nf_shard> shard() const
     {
         nf_shard out{};
-        return detail::finish(nf_table_shard(&state_, &out), out);
+        return detail::finish(detail::made(state_.importance, nf_table_shard(&state_, &out)), out);
     }
 
     std::size_t saved_size() const noexcept { return NF_TABLE_SAVED_HEADER + std::size_t{4} * items(); }
     returned<void> save(span<unsigned char> saved) const
     {
-        return detail::finish(nf_table_save(&state_, saved.data(), saved.size()));
+        return finish(nf_table_save(&state_, saved.data(), saved.size()));
     }
     returned<void> load(memory where, span<const unsigned char> saved)
     {
@@ -986,13 +1040,14 @@ private:
         return index.size() <= UINT32_MAX && (weight.empty() || weight.size() == index.size());
     }
     template <class F, class T>
-    static returned<void> finish_draw(F function, T *state, rng &random, const span<std::uint32_t> &index,
-                                      const span<float> &weight)
+    returned<void> finish_draw(F function, T *state, rng &random, const span<std::uint32_t> &index,
+                               const span<float> &weight) const
     {
-        return detail::finish(fits(index, weight)
-                                  ? function(state, &random.state(), length(index), index.data(), weight.data())
-                                  : NF_ERR_RANGE);
+        return finish(fits(index, weight)
+                          ? function(state, &random.state(), length(index), index.data(), weight.data())
+                          : NF_ERR_LENGTH);
     }
+    returned<void> finish(nf_status code) const { return detail::finish(detail::made(state_.importance, code)); }
 
     nf_table state_{};
 };
@@ -1004,7 +1059,7 @@ inline returned<void> allocate(span<const nf_shard> shards, float uniform_fracti
     const bool fits = shards.size() == counts.size() && shards.size() <= UINT32_MAX;
     return detail::finish(fits ? nf_shards_allocate(shards.data(), static_cast<std::uint32_t>(shards.size()),
                                                     uniform_fraction, &random.state(), batch, counts.data())
-                               : NF_ERR_RANGE);
+                               : NF_ERR_LENGTH);
 }
 
 // nf_omis_weights(): pdf[batch * techniques], technique[batch], weight[batch].
@@ -1017,7 +1072,8 @@ inline returned<void> omis_weights(std::uint32_t techniques, std::uint32_t items
                       pdf.size() % techniques == 0 && pdf.size() / techniques == batch;
     return detail::finish(fits ? nf_omis_weights(static_cast<std::uint32_t>(how), ridge, techniques, items, pdf.data(),
                                                  technique.data(), static_cast<std::uint32_t>(batch), weight.data())
-                               : NF_ERR_RANGE);
+                          : techniques > 0 ? NF_ERR_LENGTH
+                                           : NF_ERR_RANGE);
 }
 
 // nf_shuffle(): the elements from `position` on of a random permutation.
@@ -1030,7 +1086,7 @@ inline returned<void> shuffle(std::uint64_t seed, std::uint32_t items, std::uint
              : NF_ERR_RANGE);
 }
 
-// Importances of many items at once; rows are the items. Lengths that do not agree are status::range.
+// Importances of many items at once; rows are the items.
 namespace importance {
 
 enum class split : std::uint32_t { norm = NF_NODES_NORM, sign = NF_NODES_SIGN };
@@ -1058,7 +1114,7 @@ inline returned<void> cross_entropy(span<const float> logits, span<const std::ui
     return noisefloor::detail::finish(
         fits ? nf_importance_cross_entropy(logits.data(), label.data(), detail::number(rows), classes, norm.data(),
                                            loss.data(), gradient.data())
-             : NF_ERR_RANGE);
+             : NF_ERR_LENGTH);
 }
 // nf_importance_squared_error(): output[rows * outputs], target[rows * outputs], norm[rows].
 inline returned<void> squared_error(span<const float> output, span<const float> target, span<float> norm)
@@ -1068,7 +1124,7 @@ inline returned<void> squared_error(span<const float> output, span<const float> 
     return noisefloor::detail::finish(
         fits ? nf_importance_squared_error(output.data(), target.data(), detail::number(norm.size()), outputs,
                                            norm.data())
-             : NF_ERR_RANGE);
+             : NF_ERR_LENGTH);
 }
 // nf_importance_gradient(): derivatives[rows * outputs], out[rows * techniques].
 inline returned<void> gradient(span<const float> derivatives, std::uint32_t techniques, span<float> out,
@@ -1078,9 +1134,10 @@ inline returned<void> gradient(span<const float> derivatives, std::uint32_t tech
     const std::size_t rows = whole ? out.size() / techniques : 0;
     const std::uint32_t outputs = whole ? detail::columns(derivatives.size(), rows, techniques) : 0;
     return noisefloor::detail::finish(
-        outputs > 0 ? nf_importance_gradient(derivatives.data(), detail::number(rows), outputs,
-                                             static_cast<std::uint32_t>(how), techniques, out.data())
-                    : NF_ERR_RANGE);
+        outputs > 0      ? nf_importance_gradient(derivatives.data(), detail::number(rows), outputs,
+                                                  static_cast<std::uint32_t>(how), techniques, out.data())
+        : techniques > 0 ? NF_ERR_LENGTH
+                         : NF_ERR_RANGE);
 }
 
 } // namespace importance
@@ -1115,10 +1172,11 @@ public:
         const std::uint64_t batch = technique.size();
         const bool fits = batch <= UINT32_MAX && pdf.size() == batch * techniques_ &&
                           gradients.size() == batch * parameters_ && out.size() == parameters_;
-        return detail::finish(fits ? nf_gradient_estimate(handle_, static_cast<std::uint32_t>(how), ridge, momentum,
-                                                          items, pdf.data(), technique.data(), gradients.data(),
-                                                          static_cast<std::uint32_t>(batch), out.data())
-                                   : NF_ERR_RANGE);
+        const nf_status code = fits ? nf_gradient_estimate(handle_, static_cast<std::uint32_t>(how), ridge, momentum,
+                                                           items, pdf.data(), technique.data(), gradients.data(),
+                                                           static_cast<std::uint32_t>(batch), out.data())
+                                    : NF_ERR_LENGTH;
+        return detail::finish(detail::made(handle_, code));
     }
     nf_gradient *handle() const noexcept { return handle_; }
 

@@ -24,7 +24,7 @@ pub const NF_OMIS_BALANCE: u32 = 3;
 ///
 /// With S = sum_k n_k p_k it keeps A = sum p p' / S^2, b = sum f p / S^2 and a few sums more. After R rounds of n_k
 /// samples an integral is sum f / S / R - (sum p / S / R - 1)' alpha with A alpha = b: the balance estimate, less what
-/// the samples got wrong about the densities' integrals.
+/// the samples got wrong about the densities' integrals. May be moved and copied as nf_cv_accumulator.
 #[allow(non_camel_case_types)]
 pub struct nf_omis {
     _private: (),

@@ -31,7 +31,7 @@ pub const NF_ERR_MISMATCH: nf_status = -9;
 pub const NF_ERR_FOREIGN: nf_status = -10;
 /// The format is newer than this library.
 pub const NF_ERR_VERSION: nf_status = -11;
-/// Bytes are missing, or there are too many.
+/// Bytes, or elements of an array, are missing, or there are too many.
 pub const NF_ERR_LENGTH: nf_status = -12;
 /// The bytes are damaged.
 pub const NF_ERR_CORRUPT: nf_status = -13;

@@ -16,9 +16,9 @@ impl<'a, R: Real> Arena<'a, R> {
     /// Of a buffer that `needed` numbers will be taken from, None for more than there can be.
     ///
     /// # Errors
-    /// [`Error::Memory`] if it has fewer.
+    /// [`Error::Memory`] if it has fewer, [`Error::Range`] for None.
     pub(crate) fn new(buffer: &'a mut [R], needed: Option<usize>) -> Result<Self, Error> {
-        ensure(needed.is_some_and(|needed| needed <= buffer.len()), Error::Memory)?;
+        ensure(needed.ok_or(Error::Range)? <= buffer.len(), Error::Memory)?;
         Ok(Self { rest: buffer, counted: None })
     }
 

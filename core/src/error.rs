@@ -23,7 +23,7 @@ pub enum Error {
     Foreign = -10,
     /// The format is newer than this library.
     Version = -11,
-    /// Bytes are missing, or there are too many.
+    /// Bytes, or elements of an array, are missing, or there are too many.
     Length = -12,
     /// The bytes are damaged: the checksum does not match, or fields make no sense.
     Corrupt = -13,
@@ -34,7 +34,8 @@ impl Error {
     pub const fn words(self) -> &'static CStr {
         match self {
             Error::Range => {
-                c"an argument is outside its documented range; in C nf_check() names a configuration's field"
+                c"an argument is outside its documented range, a coordinate outside [0, 1] say; \
+                  in C nf_check() names a configuration's field"
             }
             Error::NotFinite => c"an input value is NaN or infinite",
             Error::Memory => c"caller-supplied memory is too small: the function's description says how much it needs",
@@ -43,7 +44,7 @@ impl Error {
             Error::Mismatch => c"the two objects were made with different configurations",
             Error::Foreign => c"the bytes are not a noisefloor tile or table",
             Error::Version => c"the format is newer than this library",
-            Error::Length => c"bytes are missing, or there are too many",
+            Error::Length => c"lengths do not agree: bytes, or elements of an array, are missing or too many",
             Error::Corrupt => c"the bytes are damaged: the checksum does not match, or fields make no sense",
         }
     }

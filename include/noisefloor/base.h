@@ -30,7 +30,7 @@ typedef int32_t nf_status; // 0 is success, a negative value an error; `nf_statu
 #define NF_ERR_MISMATCH (-9) // Two objects were made with different configurations.
 #define NF_ERR_FOREIGN (-10) // The bytes are no tile, or no table.
 #define NF_ERR_VERSION (-11) // The format is newer than this library.
-#define NF_ERR_LENGTH (-12) // Bytes are missing, or there are too many.
+#define NF_ERR_LENGTH (-12) // Bytes, or elements of an array, are missing, or there are too many.
 #define NF_ERR_CORRUPT (-13) // The bytes are damaged.
 
 // A static, NUL-terminated sentence for a status; never NULL, also for values that are no status.

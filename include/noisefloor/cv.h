@@ -122,7 +122,7 @@ size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
 // Estimates `integrals` integrals from `samples->n` samples of each, apart from each other: out[integrals]. Nothing of
 // the workspace, nf_cv_workspace_size() bytes, is kept.
-// NF_ERR_RANGE: the configuration, a coordinate, more samples than the solver takes, or a size that no memory has;
+// NF_ERR_RANGE: the configuration, a coordinate, 2^32 samples or more than the solver takes, a size no memory has;
 // NF_ERR_NOT_FINITE: a sample; NF_ERR_NO_SAMPLES; NF_ERR_MEMORY: the workspace; NF_ERR_UNSUPPORTED: what nf_check()
 // says excludes each other, `known` and its integrals, or of several integrals `controls` and NF_NONFINITE_SKIP.
 nf_status nf_cv_estimate(const nf_cv_config *config, const nf_cv_samples *samples, size_t integrals, void *workspace,
@@ -189,7 +189,7 @@ size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image 
 // among fits to f and to what is left of it, with order 0 between the mean and what is known.
 // NF_ERR_UNSUPPORTED: other estimators and solvers, `controls`, NF_NONFINITE_SKIP, luminance ratio, `known` with
 // NF_CV_K_FOLD; NF_ERR_RANGE also for the image, negative factors or integrals, and `known` without integrals or they
-// without it; NF_ERR_MEMORY also for 2^32 samples and more; else as for nf_cv_estimate().
+// without it; else as for nf_cv_estimate().
 nf_status nf_cv_image_estimate(const nf_cv_config *config, const nf_cv_image *image, const nf_cv_samples *samples,
     void *workspace, size_t bytes, nf_estimate *out);
 
@@ -278,7 +278,7 @@ typedef struct nf_recommendation {
 
 // Which estimator, order and tile to use for `spp` samples per pixel of `dims` coordinates, both at least 1.
 // sampling: NF_SAMPLING_*. can_share: 1 if neighbouring pixels' samples are at hand together and integrate similar
-// functions, else 0. sample_cost: nanoseconds to trace a sample, above 0; INFINITY compares errors at equal samples.
+// functions, else 0. sample_cost: nanoseconds to trace a sample, above 0; INFINITY: any fit that pays at some cost.
 // NF_ERR_RANGE; NF_ERR_NOT_FINITE: a NaN.
 nf_status nf_recommend(uint32_t dims, uint32_t spp, uint32_t sampling, uint32_t can_share, float sample_cost,
     nf_recommendation *out);

@@ -64,7 +64,7 @@ nf_status nf_mis_optimal_contribution(const float *pdf, const uint32_t *counts, 
 //
 // With S = sum_k n_k p_k it keeps A = sum p p' / S^2, b = sum f p / S^2 and a few sums more. After R rounds of n_k
 // samples an integral is sum f / S / R - (sum p / S / R - 1)' alpha with A alpha = b: the balance estimate, less what
-// the samples got wrong about the densities' integrals.
+// the samples got wrong about the densities' integrals. May be moved and copied as nf_cv_accumulator.
 typedef struct nf_omis nf_omis;
 
 // Bytes of an nf_omis; 0 if techniques is not 1..NF_MIS_MAX_TECHNIQUES, integrals are 0, or no memory has them.

@@ -120,6 +120,8 @@ static void combinations(void)
     CHECK(nf_cv_workspace_size(&config, 4097) > 0);
 #if SIZE_MAX > UINT32_MAX
     CHECK(nf_cv_workspace_size(&config, (size_t)UINT32_MAX + 1) == 0);
+    CHECK_REFUSED(estimate_one(&config, u, f, (size_t)UINT32_MAX + 1, work.start, work.bytes, &out), NF_ERR_RANGE,
+                  out);
 #endif
     config = make_config(2, 2, 2, NF_CV_ROBUST);
     config.color = NF_COLOR_LUMINANCE_RATIO;

@@ -221,6 +221,7 @@ static void errors(void)
     static uint32_t surfaces[PIXELS + 1];
     static float factors[PIXELS + 1];
     static const uint32_t sizes[] = {0x10000u, 0x7fffffffu, 0x80000000u, 0xffffffffu};
+    static const size_t many[] = {0xffffffffu / PIXELS + 1, 0x80000000u, 0xffffffffu};
     nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
     nf_cv_image image = make_image(WIDTH, HEIGHT);
     const size_t bytes = image_workspace_size(&config, &image, N);
@@ -320,11 +321,16 @@ static void errors(void)
             CHECK(status == NF_ERR_RANGE || status == NF_ERR_MEMORY);
             image.frames = 0;
             status = estimate_image(&config, &image, u, f, SIZE_MAX / (i + 1), work.start, bytes, out);
-            CHECK(status == NF_ERR_RANGE || status == NF_ERR_MEMORY);
+            CHECK(status == NF_ERR_RANGE);
             CHECK(is_poisoned(out, sizeof out));
             CHECK(image_workspace_size(&config, &image, SIZE_MAX / (i + 1)) == 0);
         }
     image = make_image(WIDTH, HEIGHT);
+    /* Too many samples, one by one and in all, are no lack of memory. */
+    for (i = 0; i < sizeof many / sizeof *many; ++i) {
+        CHECK(image_workspace_size(&config, &image, many[i]) == 0);
+        CHECK_REFUSED(estimate_image(&config, &image, u, f, many[i], work.start, bytes, out), NF_ERR_RANGE, out);
+    }
 
     /* Samples: the last of the last pixel. */
     saved = f[PIXELS * N - 1];

@@ -63,6 +63,9 @@ static void cost_of_samples(void)
     CHECK(out.method == NF_METHOD_PLAIN_MEAN && out.cost == 0.0f && out.pays_from == from);
     CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 0, 1e6f, &out), NF_OK);
     CHECK(out.method == NF_METHOD_PLAIN_MEAN && out.pays_from == INFINITY);
+    /* No fit pays: not even if samples cost no end of time. */
+    CHECK_STATUS(nf_recommend(2, 64, NF_SAMPLING_STRATIFIED, 1, INFINITY, &out), NF_OK);
+    CHECK(out.method == NF_METHOD_PLAIN_MEAN && out.pays_from == INFINITY);
 }
 
 static void errors(void)

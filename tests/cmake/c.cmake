@@ -21,7 +21,13 @@ foreach(function IN LISTS functions)
         message(FATAL_ERROR "tests/c never calls ${call})")
     endif()
 endforeach()
+
+function(wrapper label name)
+    add_program(${label} wrapper_${name} c/wrapper.cpp -O1 -Wconversion -Wshadow ${ARGN})
+    add_check(${label} wrapper_${name} ${under} "$<TARGET_FILE:wrapper_${name}>")
+endfunction()
 if(TESTS_UNDER)
+    wrapper(c99 throws)
     return()
 endif()
 
@@ -34,13 +40,9 @@ foreach(source IN LISTS sources)
 endforeach()
 
 # Errors are thrown; the caller turned that off; the compiler did.
-function(wrapper name)
-    add_program(wrapper wrapper_${name} c/wrapper.cpp -O1 -Wconversion -Wshadow ${ARGN})
-    add_check(wrapper ${name} wrapper_${name})
-endfunction()
-wrapper(throws)
-wrapper(no_exceptions -DNOISEFLOOR_NO_EXCEPTIONS)
-wrapper(compiled_without -fno-exceptions -fno-rtti)
+wrapper(wrapper throws)
+wrapper(wrapper no_exceptions -DNOISEFLOOR_NO_EXCEPTIONS)
+wrapper(wrapper compiled_without -fno-exceptions -fno-rtti)
 
 # Each header alone, in every language standard it promises.
 function(header_alone name header language standard)

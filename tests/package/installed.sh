@@ -89,6 +89,9 @@ for kind in shared static; do
     if [ $kind = static ]; then before=-Wl,-Bstatic after=-Wl,-Bdynamic; fi
     pkg_config "$moved/lib" "${CC:-cc} -std=c99" app.c "$work/pkg_config_c_$kind" "$before" "$after"
     pkg_config "$moved/lib" "${CXX:-c++} -std=c++17" app.cpp "$work/pkg_config_cpp_$kind" "$before" "$after"
+    # The common name is of the one that alone is asked for.
+    project "$package" "$work/$kind asked for" "-DCMAKE_PREFIX_PATH=$moved" -DKIND=$kind -DBOTH=ON
+    linked_as_named "$work/$kind asked for/app_$kind"
 done
 
 # Debian's way: the prefix is /usr, libraries are in a folder of the architecture, and $DESTDIR stands before all.

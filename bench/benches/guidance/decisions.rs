@@ -135,7 +135,8 @@ fn estimator(cells: &[Cell], here: &[&Cell], says: &Recommendation, stratified: 
     let possible = here.iter().copied().filter(|cell| match cell.method.kind {
         Kind::Mean => true,
         Kind::PerPixel => !stratified,
-        Kind::Blocks | Kind::Windows => share,
+        // To so many stratified samples they do not pay in rendered frames, whatever a sample costs.
+        Kind::Blocks | Kind::Windows => share && !(stratified && cell.n >= 64),
     });
     let all: Vec<(&Cell, Summary)> =
         possible.filter(|cell| cell.method.regressed == cell.dims).map(|cell| (cell, summary(cell, cells))).collect();

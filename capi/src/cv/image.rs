@@ -108,7 +108,7 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
 ///
 /// NF_ERR_UNSUPPORTED: other estimators and solvers, `controls`, NF_NONFINITE_SKIP, luminance ratio, `known` with
 /// NF_CV_K_FOLD; NF_ERR_RANGE also for the image, negative factors or integrals, and `known` without integrals or they
-/// without it; NF_ERR_MEMORY also for 2^32 samples and more; else as for nf_cv_estimate().
+/// without it; else as for nf_cv_estimate().
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_estimate(
     config: *const nf_cv_config,

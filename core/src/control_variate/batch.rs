@@ -23,14 +23,14 @@ use crate::real::Real;
 ///
 /// # Errors
 /// [`Error::Range`] or [`Error::Unsupported`] for a configuration that cannot be, [`Error::Range`] also for more
-/// samples than [`estimate`] takes, [`Error::Memory`] if no memory could be large enough.
+/// samples than [`estimate`] takes, or than any memory could be large enough for.
 #[inline]
 pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error> {
     let plan = Plan::new::<R>(config, config.checked_shape()?.columns(), n)?;
     if plan.method.streams() {
         return Accumulator::<R>::new(config).map(|stream| stream.len() + stream.needed());
     }
-    size(config, &plan, n).ok_or(Error::Memory)
+    size(config, &plan, n).ok_or(Error::Range)
 }
 
 /// The same of what does not stream.

@@ -69,9 +69,9 @@ use terms::Terms;
 /// Numbers of workspace that [`estimate_image`] needs for `n` samples in each pixel.
 ///
 /// # Errors
-/// As for [`estimate_image`]; [`Error::Memory`] if no memory could be large enough.
+/// As for [`estimate_image`]; [`Error::Range`] also if no memory could be large enough.
 pub fn image_workspace_len(config: &Config, image: &Image<'_>, n: usize) -> Result<usize, Error> {
-    Call { n, ..Call::new(config, image, &Basis::empty())? }.workspace_len().ok_or(Error::Memory)
+    Call { n, ..Call::new(config, image, &Basis::empty())? }.workspace_len().ok_or(Error::Range)
 }
 
 /// Which samples count must not depend on the pixel, the fit is of the channels, and other estimators share no fits.
