@@ -1,6 +1,5 @@
 //! Distances to the nearest neighbour.
 
-use super::check;
 use crate::points::Points;
 use kiddo::SquaredEuclidean;
 use kiddo::immutable::float::kdtree::ImmutableKdTree;
@@ -38,9 +37,9 @@ pub fn lattice_distance(points: usize, dims: usize) -> f64 {
     2.0 * libm::pow(centre_density / points as f64, 1.0 / dims as f64)
 }
 
-/// Nearest-neighbour statistics; none for fewer than two points, or of what [`check`] refuses.
+/// Nearest-neighbour statistics; none for fewer than two points, or of what [`check`](super::check) refuses.
 pub fn neighbours(points: &Points) -> Option<Neighbours> {
-    if points.len() < 2 || check(points).is_err() {
+    if points.len() < 2 || super::check(points).is_err() {
         return None;
     }
     let [bounded, toroidal] = match points.dims() {
