@@ -1,5 +1,6 @@
 #![no_std]
 #![forbid(unsafe_code)]
+#![warn(missing_debug_implementations)]
 #![cfg_attr(
     not(all(feature = "control-variate", feature = "minibatch", feature = "sampler", feature = "tile")),
     allow(dead_code, unused_imports, reason = "each feature uses some of what they share")

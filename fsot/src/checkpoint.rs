@@ -60,14 +60,18 @@ impl Problem {
 /// Saves the state of an optimisation; an older checkpoint is replaced atomically.
 ///
 /// # Errors
-/// The file cannot be written.
+/// The file cannot be written; the optimisation is beyond its last step, from where [`resume`] would not continue.
 pub fn save(path: &Path, problem: &Problem, optimization: &dyn Optimization) -> Result<()> {
+    let [done, all] = [optimization.iteration(), optimization.iterations()];
+    if done > all {
+        return Err(Error::Input(format!("step {done} of {all} is beyond the last: its state is not saved")));
+    }
     let coordinates = optimization.coordinates();
     let header = Header {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         program: program().to_owned(),
         problem: problem.description.clone(),
-        iteration: optimization.iteration(),
+        iteration: done,
         coordinates: coordinates.len() as u64,
     };
     let header = serde_json::to_vec(&header).map_err(|error| Error::Io { path: path.into(), source: error.into() })?;
@@ -88,12 +92,7 @@ pub fn save(path: &Path, problem: &Problem, optimization: &dyn Optimization) -> 
 /// The file cannot be read, is no checkpoint, is truncated or damaged, or belongs to another problem, version or
 /// build: the sentence says which, and what differs.
 pub fn resume(path: &Path, problem: &Problem, optimization: &mut dyn Optimization) -> Result<bool> {
-    let refuse = |why: String| {
-        Error::Input(format!(
-            "cannot continue from the checkpoint {}: {why}. Remove it to start anew, or name another with --checkpoint",
-            path.display()
-        ))
-    };
+    let refuse = |why: String| Error::Input(format!("cannot continue from the checkpoint {}: {why}", path.display()));
     match fs::metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
         Err(error) => return Err(Error::io(path)(error)),
@@ -228,7 +227,10 @@ fn compare(name: &str, there: &Value, here: &Value, list: &mut Vec<String>) {
                 compare(&inner, a.get(key).unwrap_or(&Value::Null), b.get(key).unwrap_or(&Value::Null), list);
             }
         }
-        (a, b) => list.push(format!("{name}: {} there, {} here", short(a), short(b))),
+        (a, b) => {
+            let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
+            list.push(format!("{name}{} there, {} here", short(a), short(b)));
+        }
     }
 }
 

@@ -2,6 +2,11 @@
 //!
 //! Chapters and equations are those of C. Salaün, "Toward Improving Monte Carlo Estimator for Rendering and Machine
 //! Learning", 2025.
+//!
+//! `examples/library.rs` is a program that optimises points by a function, with progress and a checkpoint. All work is
+//! done on the current rayon pool, which [`rayon::ThreadPool::install`] chooses.
+
+#![warn(missing_debug_implementations)]
 
 pub mod checkpoint;
 pub mod class;

@@ -12,7 +12,9 @@ pub const MOST: u64 = 16 << 30;
 pub(crate) fn check(bytes: u64) -> Result<()> {
     if bytes > MOST {
         return Err(Error::Input(format!(
-            "this would need {bytes} bytes of memory, more than {MOST}: ask for fewer points or samples"
+            "this would need {} of memory, more than {}: ask for fewer points or samples",
+            gibibytes(bytes),
+            gibibytes(MOST)
         )));
     }
     // Given back at once, and never written to.
@@ -21,8 +23,14 @@ pub(crate) fn check(bytes: u64) -> Result<()> {
         return Ok(());
     }
     Err(Error::Input(format!(
-        "this would need {bytes} bytes of memory, more than there is: ask for fewer points or samples"
+        "this would need {} of memory, more than there is: ask for fewer points or samples",
+        gibibytes(bytes)
     )))
+}
+
+/// Rounded up, so that what is more than a limit says so.
+fn gibibytes(bytes: u64) -> String {
+    format!("{} GiB", (bytes as f64 / f64::from(1 << 30) * 10.0).ceil() / 10.0)
 }
 
 /// How many of `wanted` workers, each of which needs `each` bytes beside the `base` of all, there is memory for.
@@ -48,8 +56,8 @@ mod tests {
     #[test]
     fn too_much_is_refused_with_its_size() {
         assert!(check(1 << 20).is_ok());
-        for bytes in [MOST + 1, u64::MAX] {
-            assert!(check(bytes).unwrap_err().to_string().contains(&bytes.to_string()));
+        for (bytes, size) in [(MOST + 1, "need 16.1 GiB of memory, more than 16 GiB:"), (u64::MAX, "17179869184 GiB")] {
+            assert!(check(bytes).unwrap_err().to_string().contains(size));
         }
     }
 
@@ -59,7 +67,7 @@ mod tests {
         assert_eq!([1, 2, 3, 64].map(|wanted| allowed(quarter, quarter, wanted)), [1, 2, 3, 3]);
         assert_eq!(allowed(MOST, quarter, 64), 1);
         assert_eq!(workers(1 << 10, 1 << 10, 64).unwrap(), 64);
-        assert!(workers(MOST, quarter, 64).unwrap_err().to_string().contains(&(MOST + quarter).to_string()));
+        assert!(workers(MOST, quarter, 64).unwrap_err().to_string().contains("need 20 GiB"));
         assert!(workers(u64::MAX, u64::MAX, 0).is_err());
     }
 }

@@ -228,7 +228,8 @@ fn json(text: &str) -> std::result::Result<Table, String> {
     let json: Json = serde_json::from_str(text).map_err(|error| error.to_string())?;
     if let Some(index) = json.points.iter().position(|point| point.len() != json.dims) {
         return Err(format!(
-            "point {index} has {}, not {}",
+            "point {} has {}, not {}",
+            index + 1,
             counted(json.points[index].len(), "coordinate"),
             json.dims
         ));

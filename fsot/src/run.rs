@@ -12,6 +12,7 @@ pub trait Optimization {
     fn iteration(&self) -> u64;
 
     /// Takes one step, on the threads of the current rayon pool. Returns what is being minimised, before the step.
+    /// After the last one there is nothing to gain, and no [checkpoint](crate::checkpoint::save).
     fn step(&mut self) -> f64;
 
     /// Takes all steps that remain.

@@ -7,6 +7,8 @@ use fsot::read;
 use image::{GrayImage, Luma};
 use noisefloor::tile::Shape;
 use serde_json::Value;
+use std::io::Write;
+use std::process::Stdio;
 
 const FAST: &str = "--iterations 20";
 
@@ -58,6 +60,40 @@ fn points_with_every_option() {
     let printed = place.succeed("points -n 64 --progressive 3 --out p.txt --iterations 10");
     assert!(printed.contains("errors of the first points"), "{printed}");
     assert!(place.succeed("points -n 64 --out p.txt --iterations 10 --quiet").is_empty());
+}
+
+#[test]
+fn quiet_json_is_the_report_alone() {
+    let place = Place::new();
+    GrayImage::from_fn(9, 9, |x, _| Luma([20 * x as u8])).save(place.path("in.png")).unwrap();
+    for command in [
+        "points -n 9 --out p.txt",
+        "place -n 9 --out o.csv",
+        "stipple in.png -n 9 --out s.png",
+        "stipple --frames in.png --window 9 --step 1 --out s.png",
+        "tile --size 16 --integrands 1 --out t.nft",
+    ] {
+        let output = place.run(&format!("{command} --iterations 2 --quiet --json"));
+        assert!(output.stderr.is_empty(), "{command}: {}", error(&output));
+        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(json["run"]["iterations"], 2, "{command}: {json}");
+    }
+    let output = place.run("points -n 9 --iterations 2 --quiet --json --out -");
+    let json: Value = serde_json::from_slice(&output.stderr).unwrap();
+    assert_eq!(json["run"]["iterations"], 2, "{json}");
+}
+
+#[cfg(unix)]
+#[test]
+fn standard_input_is_measured() {
+    let place = Place::new();
+    let points = place.succeed(&format!("points -n 10 --out - {FAST}"));
+    place.write("p.txt", &points);
+    let expected = place.succeed("measure --quick p.txt").replace("p.txt", "-");
+    let mut child = place.command("measure --quick -").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(points.as_bytes()).unwrap();
+    assert_eq!(String::from_utf8(child.wait_with_output().unwrap().stdout).unwrap(), expected);
+    place.refuse("measure -", "- is empty");
 }
 
 #[test]

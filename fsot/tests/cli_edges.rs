@@ -272,6 +272,14 @@ fn more_memory_than_there_is() {
         "points -n 268435456 --progressive 3 --out p.txt",
         "tile --size 512 --spp 64 -d 1 --temporal 16 --temporal-kernel ema:0.1 --kernel gaussian:0.5 --out t.nft",
     ] {
-        place.refuse(arguments, "bytes of memory");
+        place.refuse(arguments, "GiB of memory");
     }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn errors_name_the_file_that_was_asked_for() {
+    let output = Place::new().run("points -n 9 --iterations 2 --out /proc/p.txt");
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(error(&output), "error: /proc/p.txt: entity not found\n");
 }

@@ -64,7 +64,7 @@ fn foreign_text_is_read() {
         ("1 2\n3 nan\n", "line 2: `nan`"),
         ("1,2\n3,x\n", "line 2: `x`"),
         ("1 2 3 4 5 6 7 8 9\n", "9 coordinates"),
-        ("{\"dims\": 2, \"points\": [[1]]}", "point 0 has 1"),
+        ("{\"dims\": 2, \"points\": [[1]]}", "point 1 has 1 coordinate,"),
         ("{\"dims\": 2", "EOF"),
         ("1 2 5\n# classes: a b\n", "`5` is not the index"),
     ] {

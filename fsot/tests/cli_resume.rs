@@ -52,7 +52,10 @@ fn interrupted_run_equals_whole(command: &str) {
     assert_eq!(code, None, "{message}");
 
     // Another problem's, and another command's.
-    place.refuse(&format!("{command} --seed 9"), "seed: 1 there, 9 here");
+    place.refuse(
+        &format!("{command} --seed 9"),
+        "seed: 1 there, 9 here). Remove it to start anew, or name another with --checkpoint",
+    );
     place.refuse("place -n 9 --out o.csv --checkpoint out.checkpoint", "there, \"place\" here");
 
     // With other threads than before.

@@ -6,7 +6,7 @@ use crate::cli_support::{Place, error};
 fn disagreement(text: &str) -> Option<String> {
     let plural = |word: &str| {
         let word = word.trim_end_matches([',', '.', ':', ';', ')']);
-        word.ends_with('s') && word != "class" && !word.starts_with('-')
+        word.ends_with('s') && !["class", "has"].contains(&word) && !word.starts_with('-')
     };
     text.lines().find_map(|line| {
         let words: Vec<&str> = line.split_whitespace().collect();

@@ -7,6 +7,12 @@ use fsot::metrics::projection::Projection;
 use fsot::metrics::transport::{slice_distance, transport};
 use fsot::points::Points;
 
+/// What [`fsot::metrics::check`] refuses.
+fn no_points() -> [Points; 4] {
+    let of = |x| Points::new(2, vec![0.5, 0.25, x, 0.5]);
+    [of(f32::NAN), of(1.5), of(-0.5), Points::new(9, vec![0.5; 18])]
+}
+
 /// Mean and smallest distance to the nearest other point, over all pairs.
 fn slow_neighbours(points: &Points, toroidal: bool) -> [f64; 2] {
     let all: Vec<&[f32]> = points.iter().collect();
@@ -73,6 +79,7 @@ fn neighbours_of_lattices_and_of_degenerate_sets() {
     e8.extend(even(8).iter().map(|x| x + 0.25));
     assert_near(neighbours(&Points::new(8, e8)).unwrap().min_toroidal, 1.0, 1e-6, "E8");
     assert!(neighbours(&random(1, 2, 1)).is_none());
+    assert!(no_points().iter().all(|points| neighbours(points).is_none()));
     for dims in [1, 2, 5, 8] {
         let equal = neighbours(&Points::new(dims, vec![0.5; 3000 * dims])).unwrap();
         assert_eq!([equal.mean, equal.min_toroidal], [0.0, 0.0], "equal points");
@@ -151,6 +158,7 @@ fn known_discrepancies() {
     let squares: Vec<f64> = (0..200).map(|s| discrepancy(&random(50, 3, s)).unwrap().relative.powi(2)).collect();
     assert_mean(&squares, 1.0, "random points");
     assert!(discrepancy(&Points::new(4, vec![0.5; 4 * 65_537])).is_none());
+    assert!(no_points().iter().all(|points| discrepancy(points).is_none()));
 }
 
 /// The projections of the centres of a fine grid of cells, sorted.

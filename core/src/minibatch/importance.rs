@@ -17,6 +17,7 @@ use crate::real::{Real, saturate};
 /// assert!(Softmax::new(&[9.0, 0.0], 0)?.norm() < 0.001); // already learnt
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
+#[derive(Clone, Copy, Debug)]
 pub struct Softmax<'a> {
     logits: &'a [f32],
     label: usize,

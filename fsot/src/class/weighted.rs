@@ -8,7 +8,7 @@ use crate::target::Target;
 use std::sync::Arc;
 
 /// A class (w, mu) and its weight kappa (5.17).
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Class {
     /// Which points it takes, and which subsets of them. Thresholds go up to its largest value at a point, not to 1.
     pub function: ClassFunction,

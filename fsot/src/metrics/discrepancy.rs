@@ -22,10 +22,11 @@ pub struct Discrepancy {
 /// `(2^-d - 3^-d) / n` in the mean.
 ///
 /// The double sum is exact for every number of points, by divide and conquer over the dimensions (Heinrich 1996): about
-/// n (log n)^d operations, never more than n^2 d. None above 65,536 points in more than 3 dimensions.
+/// n (log n)^d operations, never more than n^2 d. None above 65,536 points in more than 3 dimensions, or of what
+/// [`check`](super::check) refuses.
 pub fn discrepancy(points: &Points) -> Option<Discrepancy> {
     let (n, d) = (points.len(), points.dims());
-    if n == 0 || (d > 3 && n > MOST) {
+    if super::check(points).is_err() || (d > 3 && n > MOST) {
         return None;
     }
     let x: Vec<f64> = points.coordinates().iter().map(|&x| f64::from(x)).collect();

@@ -37,9 +37,9 @@ pub fn lattice_distance(points: usize, dims: usize) -> f64 {
     2.0 * libm::pow(centre_density / points as f64, 1.0 / dims as f64)
 }
 
-/// Nearest-neighbour statistics of valid points; none for fewer than two.
+/// Nearest-neighbour statistics; none for fewer than two points, or of what [`check`](super::check) refuses.
 pub fn neighbours(points: &Points) -> Option<Neighbours> {
-    if points.len() < 2 {
+    if points.len() < 2 || super::check(points).is_err() {
         return None;
     }
     let [bounded, toroidal] = match points.dims() {

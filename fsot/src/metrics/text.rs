@@ -106,6 +106,7 @@ impl Display for TileReport {
 }
 
 /// A table of the errors of the first points of a set.
+#[derive(Debug)]
 pub struct PrefixTable<'a>(pub &'a [PrefixError]);
 
 impl Display for PrefixTable<'_> {

@@ -22,6 +22,7 @@ use std::sync::Mutex;
 /// transport moves each slice's points, and moves every point by the mean of what its slices want. Memory: about 200
 /// bytes per point, and 32 for each thread up to 16, or as many threads as there is memory for; and what class
 /// functions of many values need.
+#[derive(Debug)]
 pub struct Optimizer {
     pub(super) problem: Problem,
     pub(super) filters: Vec<Filter>,

@@ -28,7 +28,7 @@ pub enum Quality {
 }
 
 /// What to optimise.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Problem {
     /// How many points, 1 to 2^28.
     pub points: usize,

@@ -9,7 +9,7 @@ pub(crate) const KEY_BITS: u32 = 23;
 const FEW: usize = 512;
 
 /// Memory for ranking; about 24 bytes per point.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Ranking {
     counts: Vec<u32>,
     ranks: Vec<u32>,

@@ -26,7 +26,7 @@ impl<const D: usize> Slice<D> {
 }
 
 /// Memory that slices use one after the other; about 32 bytes per point.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Workspace {
     keys: Vec<u32>,
     means: Vec<f32>,

@@ -41,7 +41,8 @@ pub(super) fn create(place: &Path) -> io::Result<NamedTempFile> {
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     for _ in 0..ATTEMPTS {
-        let file = builder.tempfile_in(folder(place))?;
+        // Its error names a file that nobody asked for.
+        let file = builder.tempfile_in(folder(place)).map_err(|error| io::Error::from(error.kind()))?;
         if matches!(file.as_file().try_lock(), Err(TryLockError::WouldBlock)) || !names(file.path(), file.as_file()) {
             continue;
         }

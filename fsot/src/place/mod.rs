@@ -21,7 +21,7 @@ use std::sync::Arc;
 pub const MAX_COLOURS: usize = 256;
 
 /// What to place.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Options {
     /// How many objects.
     pub points: usize,
@@ -39,6 +39,7 @@ pub struct Options {
 }
 
 /// Objects about to be placed.
+#[derive(Debug)]
 pub struct Placement {
     /// What to optimise.
     pub problem: Problem,

@@ -15,6 +15,7 @@ const BEGINNING: u64 = 4096;
 /// The content of a file. `fits` says of its first bytes why it is not what is asked for, before the others are read.
 pub(super) fn read(path: &Path, fits: impl FnOnce(&[u8]) -> std::result::Result<(), &'static str>) -> Result<Vec<u8>> {
     let name = path.display();
+    let path = if path == "-" { Path::new("/dev/stdin") } else { path };
     if path.is_dir() {
         return Err(Error::Input(format!("{name} is a folder: give the name of a file")));
     }

@@ -17,6 +17,7 @@ const STEPS: usize = 256;
 pub(crate) type Spectrum = [f32; SPECTRUM];
 
 /// Tables that depend on the kernel's exponent alone.
+#[derive(Debug)]
 pub(crate) struct Basis {
     /// Half of the exponent.
     pub(crate) half: f32,

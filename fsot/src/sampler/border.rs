@@ -18,7 +18,7 @@ const MEMORY: f32 = 0.01;
 
 /// Counts, and what a point pays for being in a bin: the bin's surplus now, and a sum over the past that removes what
 /// the surplus alone would leave.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(crate) struct Border {
     counts: Vec<i32>,
     means: [f32; OCTAVES],

@@ -34,6 +34,7 @@ type Errors = [Spectrum; OCTAVES];
 ///
 /// Pixels are visited in groups whose members do not see each other, and sums are in the order of pixels: the result
 /// does not depend on the number of threads.
+#[derive(Debug)]
 pub struct SamplerOptimizer {
     problem: SamplerProblem,
     basis: Basis,

@@ -14,12 +14,14 @@ const FAINT: f64 = 0.02;
 
 /// What pairs of pixels count where a pixel with itself counts 1, for each product of cosines: the squares of Gaussian
 /// filters of 2.1 pixels and, for less, of one, times the correlation of two pixels' integrands.
+#[derive(Debug)]
 pub(crate) struct Weights {
     /// `[distance along y][along x]`; none if too little.
     weights: Vec<Option<Box<Weight>>>,
 }
 
 /// What two pixels count together.
+#[derive(Debug)]
 pub(crate) struct Weight {
     /// Frequencies along each axis that count, from 0.
     modes: usize,

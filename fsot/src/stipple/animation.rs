@@ -88,6 +88,7 @@ impl Windows {
 }
 
 /// An animation about to be stippled.
+#[derive(Debug)]
 pub struct Animation {
     /// What to optimise: a class per frame. Points lie as those of [`Stipple`](super::Stipple).
     pub problem: Problem,

@@ -32,6 +32,7 @@ pub struct Dots {
 }
 
 /// A picture about to be stippled.
+#[derive(Debug)]
 pub struct Stipple {
     /// What to optimise. Points lie in [0, width / longer side] x [0, height / longer side] of the picture, y
     /// downwards from its top.

@@ -1,12 +1,13 @@
 //! What a target is.
 
 use noisefloor::rng::Rng;
+use std::fmt::Debug;
 
 /// The most dimensions that points have here.
 pub const MAX_DIMS: usize = 8;
 
 /// A target distribution on `[0, 1]^dims`.
-pub trait Target: Send + Sync {
+pub trait Target: Debug + Send + Sync {
     /// Coordinates of its points, 1 to 8.
     fn dims(&self) -> usize;
 
@@ -14,6 +15,10 @@ pub trait Target: Send + Sync {
     /// integral in (5.23), times the number of bins), and the density in each (5.24), relative to that of the same mass
     /// spread evenly over a length which does not depend on the direction: the mean length of the domain's projections.
     /// Ascending in the projected coordinate x . direction. `scratch` may hold anything; its content is lost.
+    ///
+    /// `means` and `density` have one length, at least 1, and may hold anything: write all of both, means finite and
+    /// ascending, densities finite and above 0. Nothing checks that. A mean that is NaN makes the energy of the step
+    /// NaN, and coordinates, with which no checkpoint can be continued.
     ///
     /// (5.24) as printed is relative to the length of the projection at hand. That weighs the diagonals of a square
     /// more than its sides, and long runs then end in a square grid. With a fixed length the mean force is the gradient

@@ -30,6 +30,7 @@ const STEP_STREAM: u64 = u64::MAX - 1;
 /// All sums over slices are sums of integers, so the result does not depend on the number of threads. Memory: the
 /// samples, their projections on a step's directions and, for each thread, or as many as there is memory for, their
 /// displacements.
+#[derive(Debug)]
 pub struct TileOptimizer {
     problem: TileProblem,
     stencils: Stencils,
@@ -46,7 +47,7 @@ pub struct TileOptimizer {
 }
 
 /// What the sample of a rank is moved to.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Bin {
     /// The bin's mean, as a position.
     mean: i32,

@@ -102,8 +102,10 @@ fn narrow(kernel: &Kernel, size: usize) -> Result<Vec<Tap>> {
     let radius = taps.iter().map(|tap| tap.dx.abs().max(tap.dy.abs())).max().unwrap_or(0) as usize;
     if 2 * radius >= size {
         return Err(Error::input(format!(
-            "the kernel {kernel} has a radius of {}: too wide for a tile of {size} pixels",
-            counted(radius, "pixel")
+            "the kernel {kernel} has a radius of {}: too wide for a tile of {size} pixels; use a size of {} or more, \
+             or a narrower kernel",
+            counted(radius, "pixel"),
+            (2 * radius + 1).next_power_of_two()
         )));
     }
     Ok(taps)
@@ -217,6 +219,7 @@ pub(super) struct Stencil {
 pub(super) const WEIGHT_UNIT: f32 = 256.0;
 
 /// All subclasses of a problem, and what finds one by a random number.
+#[derive(Debug)]
 pub(super) struct Stencils {
     pub(super) lattice: Lattice,
     stencils: Vec<Stencil>,

@@ -29,7 +29,7 @@ pub(crate) struct Common {
     /// Seconds between two checkpoints
     #[arg(long, value_name = "SECONDS", default_value_t = 30.0, hide = true)]
     pub(crate) checkpoint_every: f64,
-    /// Print nothing but errors
+    /// Print nothing but errors, and with --json the report
     #[arg(long, short)]
     pub(crate) quiet: bool,
     #[command(flatten)]
@@ -104,6 +104,11 @@ impl Report {
 }
 
 impl Common {
+    /// Whether no report is printed.
+    pub(crate) fn is_silent(&self) -> bool {
+        self.quiet && !self.report.json
+    }
+
     /// What --seed says.
     pub(crate) fn seed(&self) -> u64 {
         self.seed.unwrap_or(1)
@@ -166,13 +171,13 @@ impl Common {
         output::check(paths, inputs)
     }
 
-    /// Prints what was made, unless --quiet; `more` are the outputs beside OUT.
+    /// Prints what was made, unless --quiet without --json; `more` are the outputs beside OUT.
     pub(crate) fn print<'a>(
         &'a self,
         more: impl IntoIterator<Item = &'a Path>,
         text: &str,
         json: &Value,
     ) -> Result<()> {
-        if self.quiet { Ok(()) } else { self.report.print(more.into_iter().chain([&*self.out]), text, json) }
+        if self.is_silent() { Ok(()) } else { self.report.print(more.into_iter().chain([&*self.out]), text, json) }
     }
 }

@@ -71,7 +71,10 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
     if common.named_checkpoint().is_none() {
         output::check([checkpoint.as_path()], [])?;
     }
-    let resumed = checkpoint::resume(&checkpoint, &problem, optimization)?;
+    let resumed = checkpoint::resume(&checkpoint, &problem, optimization).map_err(|error| match error {
+        Error::Input(why) => Error::Input(format!("{why}. Remove it to start anew, or name another with --checkpoint")),
+        error => error,
+    })?;
     let watch = Watch::start()?;
     let mut progress = Progress::new(common, &*optimization);
     if resumed {

@@ -95,7 +95,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     outputs.add(&args.common.out, &encode(&table, Format::of(&args.common.out))?)?;
     args.pictures.add(&mut outputs, PICTURE, || draw(&table, extent))?;
     finish(outputs, &run)?;
-    if args.common.quiet {
+    if args.common.is_silent() {
         return Ok(());
     }
     // Of many points it takes more memory than their optimisation: the points are safe before.

@@ -51,7 +51,7 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
     let table = Table { points, classes: Some(stipple.labels()) };
     args.copies.add(&mut outputs, &drawing, size, &table)?;
     finish(outputs, &run)?;
-    if args.common.quiet {
+    if args.common.is_silent() {
         return Ok(());
     }
 

@@ -28,6 +28,7 @@ const BRIGHTEST: f32 = 1e30;
 const FLAT: f64 = 1e-12;
 
 /// Pixels' integrands.
+#[derive(Debug)]
 pub struct SceneTable {
     width: usize,
     height: usize,
@@ -38,6 +39,7 @@ pub struct SceneTable {
 }
 
 /// The samples of a plane of pixels that repeats.
+#[derive(Debug)]
 pub struct Plane {
     /// Pixels along each side.
     pub size: usize,

@@ -65,7 +65,7 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     let table = Table { points, classes: None };
     args.copies.add(&mut outputs, &all, size, &table)?;
     finish(outputs, &run)?;
-    if args.common.quiet {
+    if args.common.is_silent() {
         return Ok(());
     }
 
