@@ -153,7 +153,8 @@ pub unsafe extern "C" fn nf_omis_next_batch(omis: *mut nf_omis, solver: u32, rid
     })())
 }
 
-/// Adds the samples of `other`, of another thread or pass; alpha of NF_OMIS_PROGRESSIVE stays that of `omis`.
+/// Adds the samples of `other`, of another thread or pass. Of NF_OMIS_PROGRESSIVE `omis` keeps its alpha, and samples
+/// what they had when they were added: that of a fresh object is 0.
 ///
 /// NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: other techniques, integrals or counts.
 #[unsafe(no_mangle)]

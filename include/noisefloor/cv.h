@@ -235,7 +235,7 @@ nf_status nf_cv_accumulator_init(void *memory, size_t bytes, const nf_cv_config 
 // NF_NONFINITE_SKIP may skip all.
 nf_status nf_cv_accumulator_add(nf_cv_accumulator *accumulator, const nf_cv_samples *samples);
 
-// Adds all samples of `other`, which stays as it is.
+// Adds all samples of `other`, which stays as it is. In the same order, and parts, for the same bits.
 // NF_ERR_MISMATCH: other configurations; NF_ERR_RANGE: both are the same object, or hold too many samples together.
 nf_status nf_cv_accumulator_merge(nf_cv_accumulator *accumulator, const nf_cv_accumulator *other);
 

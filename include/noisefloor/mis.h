@@ -100,7 +100,8 @@ nf_status nf_omis_solve(const nf_omis *omis, uint32_t solver, float ridge, float
 // else as for nf_omis_solve.
 nf_status nf_omis_next_batch(nf_omis *omis, uint32_t solver, float ridge, float beta);
 
-// Adds the samples of `other`, of another thread or pass; alpha of NF_OMIS_PROGRESSIVE stays that of `omis`.
+// Adds the samples of `other`, of another thread or pass. Of NF_OMIS_PROGRESSIVE `omis` keeps its alpha, and samples
+// what they had when they were added: that of a fresh object is 0.
 // NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: other techniques, integrals or counts.
 nf_status nf_omis_merge(nf_omis *omis, const nf_omis *other);
 
