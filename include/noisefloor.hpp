@@ -6,7 +6,7 @@
 //
 // A call that fails throws noisefloor::error. With NOISEFLOOR_NO_EXCEPTIONS defined, or exceptions turned off in the
 // compiler, the same functions return a noisefloor::result<T> instead: see `returned`. Lengths of arrays that do not
-// agree are status::length; every call with an object that was not made yet is status::state.
+// agree are status::length, but status::memory of fill(); every call with an object not made yet is status::state.
 #ifndef NOISEFLOOR_HPP
 #define NOISEFLOOR_HPP
 
@@ -156,7 +156,7 @@ template <class... What> outcome blame(nf_status code, const What &...what) noex
         static_cast<void>((((words = check(what)) != nullptr) || ...));
     return {code, words};
 }
-// Why lengths do not agree. With a configuration that is out of its range they could not.
+// Why lengths do not agree: of a configuration that check() refuses they could not.
 template <class... What> nf_status lengths(const What &...what) noexcept
 {
     return ((check(what) == nullptr) && ...) ? NF_ERR_LENGTH : NF_ERR_RANGE;
@@ -561,14 +561,18 @@ public:
     template <class C, class = detail::if_ends<C>>
     static returned<accumulator> create(const nf_cv_config &, C &&) = delete;
     // A view of the one that is in `where`, bytes copied there say; status::mismatch if it was made with another
-    // configuration. `scratch` is overwritten. Both are of config::accumulator_size() bytes.
+    // configuration. `scratch` is overwritten, and no part of `where`; both have config::accumulator_size() bytes.
     static returned<accumulator> resume(const nf_cv_config &how, memory where, memory scratch)
     {
         accumulator found(how), empty(how);
         nf_cv_accumulator *const there = static_cast<nf_cv_accumulator *>(where.data());
-        nf_status code = nf_cv_accumulator_init(scratch.data(), scratch.bytes(), &how, &empty.handle_);
-        if (code == NF_OK && where.bytes() < nf_cv_accumulator_size(&how, nullptr))
+        nf_status code = NF_OK;
+        if (where.bytes() < nf_cv_accumulator_size(&how, nullptr))
             code = NF_ERR_MEMORY;
+        else if (there != nullptr && where.data() == scratch.data())
+            code = NF_ERR_RANGE;
+        else
+            code = nf_cv_accumulator_init(scratch.data(), scratch.bytes(), &how, &empty.handle_);
         // Only what was made with one configuration can be merged.
         if (code == NF_OK)
             code = nf_cv_accumulator_merge(empty.handle_, there);
@@ -612,7 +616,7 @@ private:
 enum class sampling : std::uint32_t { independent = NF_SAMPLING_INDEPENDENT, stratified = NF_SAMPLING_STRATIFIED };
 
 // nf_recommend(): which estimator and which tile to use for `spp` samples per pixel of `dims` coordinates, each of so
-// many nanoseconds; infinity takes each fit that pays at some cost.
+// many nanoseconds; infinity: the best fit, if one pays.
 inline returned<nf_recommendation> recommend(std::uint32_t dims, std::uint32_t spp, sampling kind, bool can_share,
                                              float sample_cost = std::numeric_limits<float>::infinity())
 {

@@ -49,7 +49,7 @@ pub struct nf_recommendation {
 /// Which estimator, order and tile to use for `spp` samples per pixel of `dims` coordinates, both at least 1.
 ///
 /// sampling: NF_SAMPLING_*. can_share: 1 if neighbouring pixels' samples are at hand together and integrate similar
-/// functions, else 0. sample_cost: nanoseconds to trace a sample, above 0; INFINITY: any fit that pays at some cost.
+/// functions, else 0. sample_cost: nanoseconds to trace a sample, above 0; INFINITY: the best fit, if one pays.
 ///
 /// NF_ERR_RANGE; NF_ERR_NOT_FINITE: a NaN.
 #[unsafe(no_mangle)]

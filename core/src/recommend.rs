@@ -71,8 +71,8 @@ pub struct Recommendation {
 /// whether neighbouring pixels' samples are at hand together and integrate similar functions.
 ///
 /// `sample_cost` is what a sample costs to trace, in nanoseconds: below [`Recommendation::pays_from`] the plain mean is
-/// best, though a cheaper fit than the one that is best at equal samples may pay earlier. Infinity takes each fit that
-/// pays at some cost.
+/// best, though a cheaper fit than the one that is best at equal samples may pay earlier. Infinity asks for the best
+/// fit, if one pays at any cost.
 ///
 /// What was measured are 1, 2, 4, 5, 8 and 15 dims with 1, 4, 16, 64 and 256 samples: dims are rounded up, those above
 /// 15 count as 15, samples are rounded down.
@@ -242,8 +242,8 @@ const STRATIFIED_ALONE: Table<(f32, f32)> = [
     [(1.0, 0.28), (0.35, 0.19), (0.23, 0.14), (0.2, 0.2), (0.16, 0.13)],
 ];
 
-/// Stratified samples of an image. From 64 on the mean: fits, whose errors are smaller in the study, did not pay in
-/// rendered frames at any cost.
+/// Stratified samples of an image. From 64 on the mean: at 16 fits hardly gain in rendered frames, and larger numbers,
+/// which were not rendered, are taken to be alike.
 #[rustfmt::skip]
 const STRATIFIED_SHARED: Table<Cell> = [
     [blocks(5, 136, 0.034, 0.03),   blocks(5, 59, 0.019, 0.0096),  blocks(5, 33, 0.011, 0.0038),

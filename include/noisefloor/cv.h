@@ -122,7 +122,7 @@ size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
 // Estimates `integrals` integrals from `samples->n` samples of each, apart from each other: out[integrals]. Nothing of
 // the workspace, nf_cv_workspace_size() bytes, is kept.
-// NF_ERR_RANGE: the configuration, a coordinate, 2^32 samples or more than the solver takes, a size no memory has;
+// NF_ERR_RANGE: the configuration, a coordinate, 2^32 samples, or more than the solver takes, no memory holds them;
 // NF_ERR_NOT_FINITE: a sample; NF_ERR_NO_SAMPLES; NF_ERR_MEMORY: the workspace; NF_ERR_UNSUPPORTED: what nf_check()
 // says excludes each other, `known` and its integrals, or of several integrals `controls` and NF_NONFINITE_SKIP.
 nf_status nf_cv_estimate(const nf_cv_config *config, const nf_cv_samples *samples, size_t integrals, void *workspace,
@@ -235,7 +235,7 @@ nf_status nf_cv_accumulator_init(void *memory, size_t bytes, const nf_cv_config 
 // NF_NONFINITE_SKIP may skip all.
 nf_status nf_cv_accumulator_add(nf_cv_accumulator *accumulator, const nf_cv_samples *samples);
 
-// Adds all samples of `other`, which stays as it is. In the same order, and parts, for the same bits.
+// Adds all samples of `other`, which stays as it is. The same parts in the same order have the same bits.
 // NF_ERR_MISMATCH: other configurations; NF_ERR_RANGE: both are the same object, or hold too many samples together.
 nf_status nf_cv_accumulator_merge(nf_cv_accumulator *accumulator, const nf_cv_accumulator *other);
 
@@ -278,7 +278,7 @@ typedef struct nf_recommendation {
 
 // Which estimator, order and tile to use for `spp` samples per pixel of `dims` coordinates, both at least 1.
 // sampling: NF_SAMPLING_*. can_share: 1 if neighbouring pixels' samples are at hand together and integrate similar
-// functions, else 0. sample_cost: nanoseconds to trace a sample, above 0; INFINITY: any fit that pays at some cost.
+// functions, else 0. sample_cost: nanoseconds to trace a sample, above 0; INFINITY: the best fit, if one pays.
 // NF_ERR_RANGE; NF_ERR_NOT_FINITE: a NaN.
 nf_status nf_recommend(uint32_t dims, uint32_t spp, uint32_t sampling, uint32_t can_share, float sample_cost,
     nf_recommendation *out);

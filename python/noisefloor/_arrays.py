@@ -110,7 +110,7 @@ def parts(state, *names):
     try:
         return [state[name] for name in names]
     except KeyError as error:
-        raise ValueError(f"the state has no {error}: it must be state_dict()'s") from None
+        raise ValueError(f"the state has no {error}: it must be state_dict()'s, of this version") from None
 
 
 def check(name, values, good, allowed):

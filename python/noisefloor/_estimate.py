@@ -89,7 +89,7 @@ def estimate(
     if n == 0:
         raise ValueError(f"u has the shape {u.shape}: there are no samples")
     if channels and own[1] > _c.MAX_CHANNELS:
-        most = f"{_c.MAX_CHANNELS} are the most; for more put them first: estimate(u, f.T)"
+        most = f"{_c.MAX_CHANNELS} are the most; for more put them first: numpy.moveaxis(f, -1, 0)"
         raise ValueError(f"the number of f's channels is {own[1]}: {most}")
     config = configure(order, estimator, basis, d, dims, slices, stratified, own[1] if channels else 1)
     try:
@@ -242,7 +242,7 @@ def configure(order, estimator, basis, d, dims, slices, stratified, channels=1):
     config.estimator = _arrays.one_of("estimator", estimator, _c.ESTIMATORS)
     config.basis = _arrays.one_of("basis", basis, _c.BASES)
     config.order = _arrays.integer("order", order, 0, _c.MAX_ORDER)
-    config.slices = _arrays.integer("slices", slices, 1, _arrays.MAX_U32)
+    config.slices = _arrays.integer("slices", slices, 1, _c.MAX_TERMS - 1)
     config.stratified = bool(stratified)
     if dims is None and not 1 <= d <= _c.MAX_DIMS:
         raise ValueError(f"u has {d} coordinates: 1 to {_c.MAX_DIMS} can be regressed; `dims` says how many of them")
@@ -254,9 +254,9 @@ def configure(order, estimator, basis, d, dims, slices, stratified, channels=1):
         own = config.slices if config.slices > 1 else 0
         terms = math.comb(config.dims - bool(own) + config.order, config.order) + own
         words = f"order {order} in {config.dims} dims with {slices} slices makes {terms} terms: at most {_c.MAX_TERMS}"
-        while config.order and _c.wrong(config):
+        while config.order > 1 and _c.wrong(config):
             config.order -= 1
-        raise ValueError(words + ("" if _c.wrong(config) else f"; order {config.order} fits"))
+        raise ValueError(f"{words}; {'fewer dims or slices fit' if _c.wrong(config) else f'order {config.order} fits'}")
     return config
 
 

@@ -45,7 +45,7 @@ def recommend(
         samples: of each integral or pixel, at least 1.
         stratified: whether points are a Sobol sequence's, a lattice's or `Sampler`'s.
         can_share: whether neighbouring pixels' samples are at hand, of integrands that are alike.
-        sample_cost: nanoseconds that a sample costs, above 0; infinity takes each fit that pays at some cost.
+        sample_cost: nanoseconds that a sample costs, above 0; infinity: the best fit, if one pays at all.
 
     Returns:
         A `Recommendation`, by measurements in rendered images. Of stratified points without neighbours it is their

@@ -238,8 +238,9 @@ class Table:
         return {"n": self._n, "others": others, **self.state_dict()}
 
     def __setstate__(self, state):
-        vars(self).update(state["others"])
-        self._prepare(state["n"])
+        n, others = _arrays.parts(state, "n", "others")
+        vars(self).update(others)
+        self._prepare(n)
         self.load_state_dict(state)
 
 

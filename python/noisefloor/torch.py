@@ -51,8 +51,8 @@ class ImportanceBatchSampler(Sampler):
         n: how many items the data set has, 1 to 2**32 - 1, or what has a length: the data set itself.
         batch_size: items in a batch, of each process.
         steps: batches in an epoch; None: n / batch_size / processes, rounded up.
-        warmup: "epoch": each item once before any is drawn by importance; None: items that nothing was said of count as
-            the mean of what `update` is told first.
+        warmup: "epoch": each item once before any is drawn by importance; None: by importance at once. Items that
+            nothing was said of count as the mean of what `update` is told first.
         uniform_fraction: the part of draws that are uniform, 0 to 1; with one technique no weight is above
             1 / uniform_fraction.
         momentum: 0 to 1: of an item's importance, from one visit to the next; none in warm-up.
@@ -105,7 +105,7 @@ class ImportanceBatchSampler(Sampler):
         self._tables = [Table(self._n, uniform_fraction=uniform_fraction, seed=own) for own in seeds]
         self.epoch = 0
         self._drawn = self._step = self._unasked = self._loop = 0
-        self._is_fresh, self._has_ended = not self._warmup, False
+        self._fresh, self._has_ended = [True] * techniques, False
         self._ahead, self._replay, self._last, self._resumed = deque(), deque(), None, False
 
     def __len__(self) -> int:
@@ -155,7 +155,8 @@ class ImportanceBatchSampler(Sampler):
             yield batch[0][self._rank :: self._processes].tolist()
             if self._loop != loop:
                 raise RuntimeError(
-                    "another loop over this sampler has begun: one at a time; evaluate with a loader of its own"
+                    "another loop over this sampler has begun, or a state was loaded: one loop at a time; evaluate "
+                    "with a loader of its own"
                 )
         self._unasked += 1
         self._has_ended = True
@@ -271,13 +272,11 @@ class ImportanceBatchSampler(Sampler):
         if not ((importance >= 0) & (importance <= LARGEST)).all():
             known = self._known(importance, scaled)
             index, importance = index[known], importance[known]
-        if self._is_fresh and len(index):
-            means = importance.mean(0, dtype=numpy.float64).astype(numpy.float32)
-            self._is_fresh = not (means > 0).all()
-            # Else items of which nothing is known yet would count as 1, whatever the scale.
-            for table, mean in zip(self._tables, means if not self._is_fresh else ()):
-                table._fill(mean)
         for j, table in enumerate(self._tables):
+            if self._fresh[j] and importance[:, j].any():
+                # Else items of which nothing is known yet would count as 1, whatever the scale.
+                table._fill(importance[:, j].mean(dtype=numpy.float64))
+                self._fresh[j] = False
             table.update(index, importance[:, j], 0.0 if first else self._momentum)
 
     def _known(self, importance, scaled):
@@ -388,16 +387,16 @@ class ImportanceBatchSampler(Sampler):
             "tables": [torch.from_numpy(table["table"]) for table in tables],
             "rng": [list(table["rng"]) for table in tables],
             "epoch": self.epoch,
-            "is_fresh": self._is_fresh,
+            "fresh": list(self._fresh),
             "drawn": self._drawn,
             "step": self._step,
             "ahead": [(torch.from_numpy(index), torch.from_numpy(weight), first) for index, weight, first in ahead],
         }
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Goes on where `state_dict` was called: the next `iter` gives what was left of the epoch. Of the constructor's
-        arguments `n`, `batch_size` and `techniques` must be the same, and `seed` becomes the state's. Several
-        techniques take the memory of one more table meanwhile."""
+        """Goes on where `state_dict` was called: the next `iter` gives what was left of the epoch, and a loop in
+        progress ends. Of the constructor's arguments `n`, `batch_size` and `techniques` must be the same, and `seed`
+        becomes the state's. Several techniques take the memory of one more table meanwhile."""
         mine = {"n": self._n, "whole_batch": self._whole, "tables": len(self._tables)}
         n, whole, states, rngs, ahead = _arrays.parts(state, "n", "whole_batch", "tables", "rng", "ahead")
         its = {"n": n, "whole_batch": whole, "tables": len(states)}
@@ -405,7 +404,7 @@ class ImportanceBatchSampler(Sampler):
             raise ValueError(f"the state is another sampler's: it has {its}, this one {mine}")
         # Nothing of this sampler changes before all of the state has been read.
         replay = deque((*(_arrays.array("ahead", part) for part in parts), first) for *parts, first in ahead)
-        seed, epoch, is_fresh, drawn, step = _arrays.parts(state, "seed", "epoch", "is_fresh", "drawn", "step")
+        seed, epoch, fresh, drawn, step = _arrays.parts(state, "seed", "epoch", "fresh", "drawn", "step")
         tables = [{"table": table, "rng": rng} for table, rng in zip(states, rngs)]
         if len(tables) > 1:  # one table refuses by itself; of several none may have been changed before
             spare = Table(self._n)
@@ -415,8 +414,11 @@ class ImportanceBatchSampler(Sampler):
             fraction = own.uniform_fraction
             own.load_state_dict(table)
             own.uniform_fraction = fraction
-        self._seed, self.epoch, self._is_fresh, self._drawn, self._step = seed, epoch, is_fresh, drawn, step
+        self._seed, self.epoch, self._fresh, self._drawn, self._step = seed, epoch, list(fresh), drawn, step
         self._replay, self._last = replay, None
+        # A loop in progress would give batches of the state to items of its own.
+        self._loop += 1
+        self._has_ended = False
         self._ahead.clear()
         self._unasked = 0
         # At the end of an epoch the next begins.

@@ -344,19 +344,19 @@ def test_what_overflows_is_left_out_where_the_loss_was_scaled(techniques, wrong)
     sampler = ImportanceBatchSampler(8, 4, techniques=techniques)
     batches = iter(sampler)
 
-    def step(scale=None, bad=()):
+    def step(scale=None, bad=(), norm=2.0):
         next(batches)
         index, weight = sampler.batch()
         logits = torch.zeros(4, 2, requires_grad=True)
-        ((scale or 1.0) * (weight * 2 * logits[:, 0]).mean()).backward()
+        ((scale or 1.0) * (weight * norm * logits[:, 0]).mean()).backward()
         logits.grad[list(bad)] = wrong
         sampler.update_from(logits, scale=scale)
         return index
 
     step(2.0)
-    left_out = step(1.0, [1])[1]  # a scale of 1 is one, too
-    q = numpy.full(8, 2.0)
-    q[left_out] = 1  # with which all begin
+    index = step(1.0, [1], norm=4.0)  # a scale of 1 is one, too
+    q = numpy.full(8, 2.0)  # the mean of the first report, which an item left out keeps
+    q[index[[0, 2, 3]]] = 4
     assert numpy.allclose(sampler._tables[0].probabilities(), 0.8 * q / q.sum() + 0.025)
     batches = iter(sampler)
     before = sampler.probabilities()
@@ -390,6 +390,23 @@ def test_reports_of_nothing_are_not_the_first():
         sampler.update(importance, range(len(importance)))
     q = numpy.array([30.0, 50.0] + 8 * [40.0])
     assert numpy.allclose(sampler.probabilities(), q / q.sum())
+    # Each of two tables has a first report of its own, and keeps it.
+    sampler = ImportanceBatchSampler(10, 2, warmup=None, uniform_fraction=0, techniques=2)
+    for index, importance in enumerate(([5.0, 0.0], [3.0, 2.0])):
+        sampler.update([importance], [index])
+    p = [table.probabilities() for table in sampler._tables]
+    q = numpy.array([5.0, 3.0] + 8 * [5.0])
+    assert numpy.allclose(p[0], q / q.sum()) and numpy.allclose(p[1], 0.1)
+
+
+def test_a_loaded_state_ends_a_loop():
+    sampler = ImportanceBatchSampler(200, 8, seed=3)
+    batches = iter(sampler)
+    next(batches)
+    sampler.load_state_dict(sampler.state_dict())
+    with pytest.raises(RuntimeError, match="or a state was loaded: one loop at a time"):
+        next(batches)
+    assert len(run(sampler)) == 25
 
 
 def test_probabilities_are_of_the_next_draw():

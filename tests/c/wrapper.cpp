@@ -369,6 +369,7 @@ static void resumed_accumulators()
     CHECK(CODE(nf::accumulator::resume(config, {second.data(), size - 1}, scratch)) == status::memory);
     CHECK(CODE(nf::accumulator::resume(config, second, {scratch.data(), size - 1})) == status::memory);
     CHECK(CODE(nf::accumulator::resume(config, workspace, scratch)) == status::state);
+    CHECK(CODE(nf::accumulator::resume(config, second, second)) == status::range);
     CHECK(CODE(nf::accumulator::resume(config, {nullptr, size}, scratch)) == status::null);
     CHECK(CODE(nf::accumulator::resume(nf::config(0, 2), second, scratch)) == status::range);
     CHECK(value_of(moved.estimate(workspace)).samples == 16);

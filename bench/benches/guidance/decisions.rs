@@ -135,7 +135,7 @@ fn estimator(cells: &[Cell], here: &[&Cell], says: &Recommendation, stratified: 
     let possible = here.iter().copied().filter(|cell| match cell.method.kind {
         Kind::Mean => true,
         Kind::PerPixel => !stratified,
-        // To so many stratified samples they do not pay in rendered frames, whatever a sample costs.
+        // At 16 stratified samples they hardly gain in rendered frames; more are taken to be alike.
         Kind::Blocks | Kind::Windows => share && !(stratified && cell.n >= 64),
     });
     let all: Vec<(&Cell, Summary)> =

@@ -112,7 +112,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_add(
     })())
 }
 
-/// Adds all samples of `other`, which stays as it is. In the same order, and parts, for the same bits.
+/// Adds all samples of `other`, which stays as it is. The same parts in the same order have the same bits.
 ///
 /// NF_ERR_MISMATCH: other configurations; NF_ERR_RANGE: both are the same object, or hold too many samples together.
 #[unsafe(no_mangle)]

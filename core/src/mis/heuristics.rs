@@ -76,7 +76,7 @@ pub fn maximum(pdf: &[f32], counts: &[u32], technique: usize) -> Result<f32, Err
     Ok(if is_first && largest > 0.0 { 1.0 } else { 0.0 })
 }
 
-/// n_k p_k of every technique: of `f32` and of 32 bits, so that sums and squares of them are far from `f64`'s limits.
+/// n_k p_k of every technique: a `u32` times an `f32`, so that sums and squares of them are far from `f64`'s limits.
 struct Densities {
     each: [f64; MAX_TECHNIQUES],
     techniques: usize,

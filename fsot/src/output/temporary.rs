@@ -41,8 +41,11 @@ pub(super) fn create(place: &Path) -> io::Result<NamedTempFile> {
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     for _ in 0..ATTEMPTS {
-        // Its error names a file that nobody asked for.
-        let file = builder.tempfile_in(folder(place)).map_err(|error| io::Error::from(error.kind()))?;
+        let file = builder.tempfile_in(folder(place)).map_err(|error| {
+            // It names a file that nobody asked for.
+            let text = error.to_string();
+            io::Error::new(error.kind(), text.rsplit_once(" at path ").map_or(&*text, |(why, _)| why).to_owned())
+        })?;
         if matches!(file.as_file().try_lock(), Err(TryLockError::WouldBlock)) || !names(file.path(), file.as_file()) {
             continue;
         }

@@ -27,7 +27,7 @@ const PER_OCTAVE: usize = 4;
 /// What `fsot measure` is asked for.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// Point sets (text, CSV or JSON) and tiles (.nft); - is standard input
+    /// Point sets (text, CSV or JSON) and tiles (.nft); - is standard input, of points
     #[arg(required_unless_present = "scenes", value_name = "FILE")]
     files: Vec<PathBuf>,
     /// Judge samplers (tables .bin, tiles .nft, `noisefloor-points`) in this folder's tables of rendered scenes
