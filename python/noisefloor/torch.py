@@ -247,7 +247,7 @@ class ImportanceBatchSampler(Sampler):
     def _learn(self, importance, index=None, scaled=None):
         """`update`, and `update_from`: leaves out items of negative importance, which no norm is, and those that
         overflowed where the loss was scaled."""
-        # Until all were visited once, what was is the 1 that stands for nothing.
+        # Until all were visited once, what was stands for nothing.
         handed = self._drawn - len(self._ahead) - len(self._replay)
         first = self._last[2] if self._last is not None else handed < max(self._warmup, int(self.epoch == 0))
         if index is None:

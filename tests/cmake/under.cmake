@@ -53,6 +53,8 @@ elseif(TESTS_UNDER STREQUAL "tsan")
     set(NOISEFLOOR_RUST_TARGET "${CMAKE_MATCH_1}" CACHE STRING "" FORCE)
     set(NOISEFLOOR_OPT_LEVEL 1 CACHE STRING "" FORCE)
     set(NOISEFLOOR_SHARED OFF CACHE BOOL "" FORCE)
+    # Of two archives of one target cargo shows the one that was asked for last, also to who waits for the other.
+    set(NOISEFLOOR_CARGO_TARGET_DIR "${CMAKE_BINARY_DIR}/cargo" CACHE PATH "" FORCE)
     set(NOISEFLOOR_CARGO_ENVIRONMENT RUSTC_BOOTSTRAP=1
         "RUSTFLAGS=-Zsanitizer=thread -Cunsafe-allow-abi-mismatch=sanitizer" CACHE STRING "" FORCE)
     string(APPEND CMAKE_CXX_FLAGS " -g -fsanitize=thread -pthread")
