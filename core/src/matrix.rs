@@ -101,15 +101,6 @@ pub(crate) fn row_mut<T>(triangle: &mut [T], j: usize) -> &mut [T] {
     part_mut(triangle, packed_len(j), j + 1)
 }
 
-/// All of its rows.
-pub(crate) fn triangle_rows_mut<T>(mut rest: &mut [T]) -> impl Iterator<Item = &mut [T]> {
-    (1..).map_while(move |len| {
-        let (row, after) = core::mem::take(&mut rest).split_at_mut_checked(len)?;
-        rest = after;
-        Some(row)
-    })
-}
-
 /// Entry (j, j) of a packed triangle.
 pub(crate) fn diagonal<T: Copy + Default>(triangle: &[T], j: usize) -> T {
     at(triangle, packed_len(j) + j)
@@ -223,8 +214,14 @@ impl<T: 'static, S: DerefMut<Target = [T]>> Triangle<S> {
         row_mut(&mut self.entries, j)
     }
 
+    /// The rows from the first on.
     pub(crate) fn rows_mut(&mut self) -> impl Iterator<Item = &mut [T]> {
-        triangle_rows_mut(&mut self.entries)
+        let mut rest: &mut [T] = &mut self.entries;
+        (1..=self.order).map_while(move |len| {
+            let (row, after) = core::mem::take(&mut rest).split_at_mut_checked(len)?;
+            rest = after;
+            Some(row)
+        })
     }
 
     pub(crate) fn at_mut(&mut self, j: usize, k: usize) -> Option<&mut T> {

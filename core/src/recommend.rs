@@ -179,8 +179,7 @@ impl Cell {
         let (unit, cost, independent, stratified) = match samples {
             ..4 => (164.0, 338.0, 2140.0, 3010.0),
             4..16 => (83.0, 231.0, 1450.0, 7350.0),
-            16..64 => (45.0, 87.0, 445.0, 56800.0),
-            _ => (45.0, 87.0, 445.0, f32::INFINITY),
+            _ => (45.0, 87.0, 445.0, 56800.0),
         };
         let scale = self.cost / unit;
         let (longer, later) = if self.image_stride == 4 { (3.0, 2.0) } else { (1.0, 1.0) };

@@ -272,10 +272,11 @@ class ImportanceBatchSampler(Sampler):
         if not ((importance >= 0) & (importance <= LARGEST)).all():
             known = self._known(importance, scaled)
             index, importance = index[known], importance[known]
+        means = (importance.sum(0, dtype=numpy.float64) / max(len(index), 1)).astype(numpy.float32)
         for j, table in enumerate(self._tables):
-            if self._fresh[j] and importance[:, j].any():
+            if self._fresh[j] and means[j] > 0:
                 # Else items of which nothing is known yet would count as 1, whatever the scale.
-                table._fill(importance[:, j].mean(dtype=numpy.float64))
+                table._fill(means[j])
                 self._fresh[j] = False
             table.update(index, importance[:, j], 0.0 if first else self._momentum)
 

@@ -30,7 +30,7 @@ pub unsafe extern "C" fn nf_cv_workspace_size(config: *const nf_cv_config, n: us
 /// Estimates `integrals` integrals from `samples->n` samples of each, apart from each other: out[integrals]. Nothing of
 /// the workspace, nf_cv_workspace_size() bytes, is kept.
 ///
-/// NF_ERR_RANGE: the configuration, a coordinate, 2^32 samples, or more than the solver takes, no memory holds them;
+/// NF_ERR_RANGE: the configuration, a coordinate, 2^32 samples, more than the solver takes or than a memory can hold;
 /// NF_ERR_NOT_FINITE: a sample; NF_ERR_NO_SAMPLES; NF_ERR_MEMORY: the workspace; NF_ERR_UNSUPPORTED: what nf_check()
 /// says excludes each other, `known` and its integrals, or of several integrals `controls` and NF_NONFINITE_SKIP.
 #[unsafe(no_mangle)]

@@ -122,16 +122,16 @@ impl Densities {
 fn unusual(pdf: &[f32], counts: &[u32]) -> Result<[f64; MAX_TECHNIQUES], Error> {
     ensure(!pdf.iter().any(|p| p.is_nan()), Error::NotFinite)?;
     ensure(pdf.iter().all(|&p| p >= 0.0), Error::Range)?;
-    let is_delta = |p: f32, n: u32| n > 0 && p == f32::INFINITY;
-    let any = pdf.iter().zip(counts).any(|(&p, &n)| is_delta(p, n));
+    let delta = pdf.iter().zip(counts).any(|(&p, &n)| n > 0 && p == f32::INFINITY);
     let mut each = [0.0; MAX_TECHNIQUES];
     for (density, (&p, &n)) in each.iter_mut().zip(pdf.iter().zip(counts)) {
-        *density = match (any, p == f32::INFINITY) {
-            (true, _) if is_delta(p, n) => f64::from(n),
-            (false, false) => f64::from(n) * f64::from(p),
-            // An infinite density beside none that counts has n = 0.
+        let p = match (delta, p == f32::INFINITY) {
+            (true, true) => 1.0,
+            (false, false) => f64::from(p),
+            // An infinite density beside none that counts has n = 0: it must not become 0 * infinity.
             _ => 0.0,
         };
+        *density = f64::from(n) * p;
     }
     Ok(each)
 }

@@ -2,7 +2,7 @@
 
 use super::solver::Solver;
 use crate::linalg::ldlt::Ldlt;
-use crate::matrix::{Triangle, copy, first, first_mut, packed_len, triangle_rows_mut};
+use crate::matrix::{Triangle, copy, first, first_mut, packed_len};
 use core::array::from_fn;
 
 /// The most techniques that one call combines.
@@ -101,7 +101,7 @@ pub(crate) fn add_products(cells: &mut [f64], x: &[f64], part: f64) {
 
 /// Calls `change` with each entry of a packed triangle and that of x x'.
 fn each_product(cells: &mut [f64], x: &[f64], change: impl Fn(&mut f64, f64)) {
-    for (line, row) in triangle_rows_mut(cells).zip(x) {
+    for (line, row) in Triangle::new(cells, x.len()).rows_mut().zip(x) {
         for (cell, column) in line.iter_mut().zip(x) {
             change(cell, row * column);
         }
