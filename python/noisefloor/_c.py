@@ -116,6 +116,7 @@ ESTIMATE = numpy.dtype(Estimate)
 
 CONSTANTS = dict(
     NF_ABI_VERSION=ABI_VERSION,
+    NF_ERR_MEMORY=-4,
     NF_CHECK_CV_CONFIG=0,
     NF_CHECK_CV_IMAGE=1,
     NF_CV_ROBUST=0,
@@ -168,6 +169,7 @@ nf_status nf_table_draw(const nf_table *, nf_rng *, uint32_t, uint32_t *, float 
 nf_status nf_table_draw_stratified(const nf_table *, nf_rng *, uint32_t, uint32_t *, float *);
 nf_status nf_table_draw_distinct(nf_table *, nf_rng *, uint32_t, uint32_t *, float *);
 nf_status nf_table_update(nf_table *, const uint32_t *, const float *, uint32_t, float);
+nf_status nf_table_append(nf_table *, const float *, uint32_t);
 nf_status nf_table_probabilities(const nf_table *, const uint32_t *, uint32_t, uint32_t, float *);
 nf_status nf_table_save(const nf_table *, void *, size_t);
 nf_status nf_table_load(nf_table *, void *, size_t, const void *, size_t);

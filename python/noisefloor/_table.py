@@ -183,6 +183,33 @@ class Table:
             _arrays.check_positive("importance", given[1])
             raise ValueError(_c.message(status))
 
+    def append(self, importance: Any) -> None:
+        """Adds items behind the last: of a replay buffer, say.
+
+        Args:
+            importance: shape (count,), finite and at least 0. One that items are to have until they are first updated
+                is the largest so far.
+        """
+        importance = _arrays.array("importance", importance)
+        _arrays.check_shape("importance", importance, (importance.size,), "a number for each new item")
+        with self._lock:
+            n = _arrays.integer("n", self._n + importance.size, 1, _arrays.MAX_U32)
+            values = _arrays.floats("importance", importance)
+            status = _c.table_append(self._at, _c.data(values), values.size)
+            if status == _c.CONSTANTS["NF_ERR_MEMORY"]:
+                saved = self._saved()
+                # Twice as many, so that items are rarely moved.
+                memory = _c.workspace(_c.table_size(min(max(n, 2 * self._n), _arrays.MAX_U32)))
+                status = _c.table_load(self._at, _c.data(memory), memory.nbytes, _c.data(saved), saved.nbytes)
+                assert not status, _c.message(status)
+                self._memory = memory
+                status = _c.table_append(self._at, _c.data(values), values.size)
+            if not status:
+                self._n = n
+                return
+        _arrays.check_positive("importance", importance)
+        raise ValueError(_c.message(status))
+
     def _fill(self, importance):
         """All items get this importance, above 0 as float32."""
         values, fraction = numpy.full(self._n, importance, numpy.float32), self.uniform_fraction
@@ -207,11 +234,13 @@ class Table:
         """All that decides what is drawn next: "table", uint8 of shape (bytes,), and "rng", two ints. The same bytes on
         every machine."""
         with self._lock:
-            saved = numpy.empty(_c.CONSTANTS["NF_TABLE_SAVED_HEADER"] + 4 * self._n, numpy.uint8)
-            status = _c.table_save(self._at, _c.data(saved), saved.nbytes)
-            rng = (self._rng.state, self._rng.increment)
+            return {"table": self._saved(), "rng": (self._rng.state, self._rng.increment)}
+
+    def _saved(self):
+        saved = numpy.empty(_c.CONSTANTS["NF_TABLE_SAVED_HEADER"] + 4 * self._n, numpy.uint8)
+        status = _c.table_save(self._at, _c.data(saved), saved.nbytes)
         assert not status, _c.message(status)
-        return {"table": saved, "rng": rng}
+        return saved
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Becomes the table that `state_dict` saw, of as many items."""

@@ -116,6 +116,36 @@ def test_what_is_refused_changes_nothing(importance, index):
         assert same(table, before)
 
 
+@hypothesis.given(strategies.lists(strategies.integers(0, 60), max_size=8), strategies.sampled_from([0, 0.2, 1]))
+def test_grown_tables_are_those_made_at_once(counts, fraction):
+    values = numpy.random.default_rng(1).random(1 + sum(counts), dtype=numpy.float32)
+    grown = noisefloor.Table(1, importance=values[:1], uniform_fraction=fraction, seed=3)
+    expected = noisefloor.Table(len(values), importance=values, uniform_fraction=fraction, seed=3)
+    for end, count in zip(1 + numpy.cumsum(counts, dtype=int), counts):
+        grown.append(values[end - count : end])
+        assert len(grown) == end
+    assert numpy.array_equal(grown.probabilities(), expected.probabilities())
+    for table in (grown, expected):
+        table.update([0, len(table) - 1], [0.5, 0.25])
+    assert same(grown, expected) and same(copy.copy(grown), pickle.loads(pickle.dumps(expected)))
+    expected.load_state_dict(grown.state_dict())
+    assert same(grown, expected)
+
+
+def test_what_cannot_be_appended_changes_nothing():
+    table, before = noisefloor.Table(4, seed=4), noisefloor.Table(4, seed=4)
+    for wrong, words in (
+        ([1, -1.0], r"importance\[1\] is -1.0: it must be at least 0"),
+        ([1e39], r"importance\[0\] is 1e\+39: it must be"),
+        ([[1.0]], "shape"),
+        (1.0, "shape"),
+        (numpy.broadcast_to(numpy.float32(1), 2**32 - 4), "n is 4294967296: it must be 1 to 4294967295"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            table.append(wrong)
+    assert len(table) == 4 and same(table, before)
+
+
 class OnlyDLPack:
     """An array that says no more than the protocol."""
 
