@@ -160,12 +160,7 @@ impl<T: 'static, S: Deref<Target = [T]>> Triangle<S> {
 
     /// The rows from the first on.
     pub(crate) fn rows(&self) -> impl Iterator<Item = &[T]> {
-        let mut rest: &[T] = &self.entries;
-        (1..=self.order).map_while(move |len| {
-            let (row, after) = rest.split_at_checked(len)?;
-            rest = after;
-            Some(row)
-        })
+        (0..self.order).map(|j| self.row(j))
     }
 }
 
@@ -230,6 +225,18 @@ impl<T: 'static, S: DerefMut<Target = [T]>> Triangle<S> {
 
     pub(crate) fn diagonal_mut(&mut self, j: usize) -> Option<&mut T> {
         self.entries.get_mut(packed_len(j) + j)
+    }
+
+    /// Adds to the diagonal, from its first entry on.
+    pub(crate) fn add_to_diagonal(&mut self, terms: impl Iterator<Item = T>)
+    where
+        T: Real,
+    {
+        for (j, term) in (0..self.order).zip(terms) {
+            if let Some(diagonal) = self.diagonal_mut(j) {
+                *diagonal += term;
+            }
+        }
     }
 
     /// What the factorisation of row `j` works on.

@@ -7,7 +7,7 @@ use super::samples::Reader;
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::lanes::{self, LANES, Lanes};
-use crate::matrix::{Panel, Triangle, first_mut, from, rows_mut};
+use crate::matrix::{Panel, Triangle, first_mut, from, from_mut, rows_mut};
 use crate::real::{Real, rounding};
 use core::ops::Deref;
 
@@ -224,9 +224,7 @@ fn clear_constant<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means:
     for (j, (&mean, &integral)) in means.iter().zip(integrals).enumerate() {
         let noise = rounding::<R>() * (mean.abs() + R::from(integral).abs());
         if (square(panels, j) / R::from_usize(n)).sqrt() <= noise {
-            for column in panels.column_mut(j) {
-                *column = [R::ZERO; LANES];
-            }
+            panels.column_mut(j).for_each(|column| *column = [R::ZERO; LANES]);
         }
     }
 }
@@ -247,9 +245,7 @@ fn clear_unused<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize) {
         return;
     }
     for group in panels.row_mut(n / LANES) {
-        for value in group.iter_mut().skip(used) {
-            *value = R::ZERO;
-        }
+        from_mut(group, used).fill(R::ZERO);
     }
 }
 

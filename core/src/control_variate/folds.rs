@@ -67,12 +67,6 @@ pub(crate) fn rotation(folds: NonZeroUsize, ours: impl Fn(usize) -> f64, theirs:
     let moved = |fold: usize, rotation: usize| (fold + rotation) % folds;
     // The sum of the squared sizes, but for what no rotation changes.
     let crowding = |rotation| (0..folds.get()).map(|fold| ours(moved(fold, rotation)) * theirs(fold)).sum::<f64>();
-    let (mut best, mut least) = (0, f64::INFINITY);
-    for rotation in 0..folds.get() {
-        let crowding = crowding(rotation);
-        if crowding < least {
-            (best, least) = (rotation, crowding);
-        }
-    }
-    best
+    let each = (0..folds.get()).map(|rotation| (rotation, crowding(rotation)));
+    each.min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(best, _)| best)
 }

@@ -174,7 +174,9 @@ impl<'a> Reader<'a> {
         h: &mut [Lanes<R>; Config::MAX_CONTROLS],
         f: &mut [Lanes<R>; Config::MAX_CHANNELS],
     ) -> usize {
-        if subset.is_all() && self.is_simple() && self.n - *next >= LANES {
+        // Samples that are positions and values, all of which count.
+        let is_simple = subset.is_all() && !self.skip && !self.luminance && self.controls == 0;
+        if is_simple && self.n - *next >= LANES {
             transpose(from(self.samples.u, *next * self.stride), self.stride, self.dims, x);
             transpose(from(self.samples.f, *next * self.inputs), self.inputs, self.inputs, f);
             *next += LANES;
@@ -194,11 +196,6 @@ impl<'a> Reader<'a> {
             }
         }
         lane
-    }
-
-    /// Whether samples are positions and values, all of which count.
-    pub(crate) fn is_simple(&self) -> bool {
-        !self.skip && !self.luminance && self.controls == 0
     }
 
     /// The values of a sample that are regressed: its channels, or its luminance.

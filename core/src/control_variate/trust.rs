@@ -197,9 +197,7 @@ fn weigh<R: Real>(judge: &Judge<R>, plain: R, errors: &[R], discounts: &[R], wei
     // Constant values: the mean is exact. A NaN cannot come from finite samples, but trust would go to the mean.
     let varies = plain > R::ZERO;
     if !varies {
-        for weight in weights {
-            *weight = R::ZERO;
-        }
+        weights.fill(R::ZERO);
         return R::ONE;
     }
     let smallest = R::from_f64(1e-30);

@@ -4,6 +4,7 @@ use super::solver::Solver;
 use crate::linalg::ldlt::Ldlt;
 use crate::matrix::{Triangle, copy, first, first_mut, packed_len};
 use core::array::from_fn;
+use core::iter;
 
 /// The most techniques that one call combines.
 pub const MAX_TECHNIQUES: usize = 16;
@@ -59,11 +60,7 @@ impl System {
                 let scale = first(&scale, n);
                 let common = m.quadratic(scale) / scale.iter().map(|entry| entry * entry).sum::<f64>();
                 let penalty = f64::from(ridge) * (trace - common) / samples.max(LEAST_SAMPLES);
-                for j in 0..n {
-                    if let Some(diagonal) = m.diagonal_mut(j) {
-                        *diagonal += penalty.max(LEAST_RIDGE * trace);
-                    }
-                }
+                m.add_to_diagonal(iter::repeat(penalty.max(LEAST_RIDGE * trace)));
                 Ldlt::new(m);
                 Factor::Definite(cells)
             }

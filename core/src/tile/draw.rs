@@ -3,7 +3,7 @@
 use super::point::{Net, netted, point};
 use super::sampler::Sampler;
 use super::site::Site;
-use crate::matrix::from_mut;
+use crate::matrix::{first_mut, from_mut};
 use crate::rng::unit;
 
 impl Sampler<'_> {
@@ -42,11 +42,7 @@ impl Sampler<'_> {
     pub fn draw_samples(&self, dims: usize, stride: usize, u: &mut [f32]) {
         match dims {
             // One sample has nothing to share.
-            1..=4 if u.len() <= stride => {
-                if let Some(u) = u.get_mut(..dims) {
-                    self.draw_into(u);
-                }
-            }
+            1..=4 if u.len() <= stride => self.draw_into(first_mut(u, dims)),
             1 => self.run::<1>(stride, u),
             2 => self.run::<2>(stride, u),
             3 => self.run::<3>(stride, u),

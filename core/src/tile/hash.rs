@@ -10,7 +10,7 @@ use crate::hash::{GOLDEN, mix};
 pub(super) fn permute(index: u32, samples: u32, random: u32) -> u32 {
     permute_few(index, samples, random).unwrap_or_else(|| {
         let (mask, scale) = mask_and_scale(samples, random);
-        (product_by_bits(scale, index, samples.trailing_zeros()) ^ random) & mask
+        (product(scale, index, samples.trailing_zeros()) ^ random) & mask
     })
 }
 
@@ -29,14 +29,9 @@ const fn mask_and_scale(samples: u32, random: u32) -> (u32, u32) {
     (mask, ((random >> 16).wrapping_mul(mask) >> 16).wrapping_add(1))
 }
 
-/// [`product`], of fields without a table: apart, so that callers stay small.
-#[inline(never)]
-fn product_by_bits(a: u32, b: u32, bits: u32) -> u32 {
-    product(a, b, bits)
-}
-
 /// The product in the field of 2^bits elements.
-#[inline]
+// Apart, so that callers stay small.
+#[inline(never)]
 const fn product(a: u32, b: u32, bits: u32) -> u32 {
     // x^bits = POLYNOMIAL(x): irreducible.
     let polynomial = POLYNOMIALS[if bits < 8 { bits } else { 8 } as usize];

@@ -5,8 +5,9 @@ use super::{Fit, Penalty};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt::Ldlt;
-use crate::matrix::{Panel, Triangle, at, copy, packed_len};
+use crate::matrix::{Panel, Triangle, copy, from_mut, packed_len};
 use crate::real::{Real, rounding};
+use core::iter;
 
 /// The matrix K = P D^-1 P' over all columns, for relative penalties D, and g = P D^-1 m.
 pub(crate) struct Dual<'a, R> {
@@ -35,9 +36,7 @@ impl<'a, R: Real> Dual<'a, R> {
                     }
                 }
                 for (i, tile_row) in tile.iter().enumerate() {
-                    for (out, &value) in kernel.row_mut(a * LANES + i).iter_mut().skip(b * LANES).zip(tile_row) {
-                        *out = value;
-                    }
+                    copy(from_mut(kernel.row_mut(a * LANES + i), b * LANES), tile_row);
                 }
             }
             for ((column, &mean), &penalty) in left.iter().zip(design.column_means).zip(penalties) {
@@ -77,11 +76,7 @@ impl<'a, R: Real> Dual<'a, R> {
         for value in matrix.entries_mut() {
             *value += lift * inverse_n;
         }
-        for i in 0..n {
-            if let Some(value) = matrix.diagonal_mut(i) {
-                *value += strength;
-            }
-        }
+        matrix.add_to_diagonal(iter::repeat(strength));
         let left = strength / (strength + lift);
         let factor = Ldlt::new(matrix);
         copy(shift, self.shift);
@@ -89,18 +84,12 @@ impl<'a, R: Real> Dual<'a, R> {
         if leave_one_out {
             factor.inverse_diagonal(inverse, diagonal);
         }
-        let mut fit = Fit::default();
-        for &value in shift.iter() {
-            fit.eccentricity += value * value;
-        }
-        fit.eccentricity *= count;
-        for &value in diagonal.iter() {
-            fit.freedom += R::ONE - strength * value;
-        }
-        fit.freedom -= R::ONE - left;
+        let eccentricity = shift.iter().fold(R::ZERO, |sum, &value| sum + value * value) * count;
+        let traced = diagonal.iter().fold(R::ZERO, |sum, &value| sum + (R::ONE - strength * value));
+        let mut fit = Fit { eccentricity, freedom: traced - (R::ONE - left), ..Fit::default() };
         for (channel, alpha) in alpha.rows_mut().enumerate() {
-            for (i, out) in alpha.iter_mut().enumerate() {
-                *out = at(&design.values.at(i / LANES, channel), i % LANES);
+            for (out, &value) in alpha.iter_mut().zip(design.values.column(channel).flatten()) {
+                *out = value;
             }
             factor.solve(alpha);
             let (mut in_sample, mut correction) = (R::ZERO, R::ZERO);

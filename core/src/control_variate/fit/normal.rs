@@ -11,7 +11,7 @@ use super::{Fit, Penalty};
 use crate::arena::Arena;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::ldlt::Ldlt;
-use crate::matrix::{Panel, Triangle, copy, packed_len, row_at, rows, set};
+use crate::matrix::{Panel, Triangle, copy, packed_len, row_at, rows, set, split_at};
 use crate::real::{Real, rounding};
 
 /// A ridge problem whose intercept is free and eliminated.
@@ -48,11 +48,7 @@ impl<'a, R: Real> Normal<'a, R> {
         let mut matrix = arena.triangle(self.gram.order());
         copy(matrix.entries_mut(), self.gram.entries());
         let strength = penalty.strength * self.count;
-        for (j, &relative) in penalty.relative.iter().enumerate() {
-            if let Some(diagonal) = matrix.diagonal_mut(j) {
-                *diagonal += strength * relative;
-            }
-        }
+        matrix.add_to_diagonal(penalty.relative.iter().map(|&relative| strength * relative));
         Ldlt::new(matrix)
     }
 
@@ -243,11 +239,9 @@ impl<'a, R: Real> Centred<'a, R> {
         let means = arena.take(columns);
         let count = sums.count();
         let inverse = R::ONE / count;
-        for (j, mean) in means.iter_mut().enumerate() {
-            *mean = sums.column_total(j) * inverse;
-        }
         for j in 0..columns {
             let total = sums.column_total(j);
+            set(means, j, total * inverse);
             let products = sums.gram.row(j + 1).iter().skip(1);
             for ((out, &value), &mean) in gram.row_mut(j).iter_mut().zip(products).zip(means.iter()) {
                 *out = value - total * mean;
@@ -301,14 +295,13 @@ impl<R: Real> Objective<R> for Centred<'_, R> {
             copy(gradient, rhs.row(channel));
         }
         for (j, &value) in b.iter().enumerate() {
+            let Some((before, own)) = split_at(gradient, j) else { break };
             let mut product = gram.diagonal(j) * value;
-            for ((&gram, &other), out) in gram.left(j).iter().zip(b).zip(gradient.iter_mut()) {
+            for ((&gram, &other), out) in gram.left(j).iter().zip(b).zip(before) {
                 product += gram * other;
                 *out += sign * gram * value;
             }
-            if let Some(out) = gradient.get_mut(j) {
-                *out += sign * product;
-            }
+            *own += sign * product;
         }
         let inverse = R::ONE / *count;
         for out in gradient.iter_mut() {
