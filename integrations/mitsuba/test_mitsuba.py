@@ -279,6 +279,7 @@ class Recorded(unittest.TestCase):
             ({"width": 8.5}, "width is 8.5: an integer"),
             ({"height": -1}, "height is -1: it must be 0 to"),
             ({"whit": True}, "whit"),
+            ({"sample_count": 0}, "sample_count is 0: it must be 1 at least"),
         ):
             with self.assertRaisesRegex(RuntimeError, why):
                 mi.load_dict({"type": "noisefloor", **more})
@@ -319,6 +320,18 @@ class Recorded(unittest.TestCase):
         with self.assertRaises(RuntimeError) as refused:
             mi.render(mi.load_dict(scene), spp=4)
         self.assertIn("for 0 x 0 pixels, and 4096 samples", str(refused.exception.__cause__))
+
+    def test_sensors_by_themselves_are_prepared(self):
+        scene = mi.cornell_box()
+        scene["sensor"]["film"].update(width=16, height=8)
+        scene["sensor"]["sampler"] = {"type": "noisefloor"}
+        sensor = mi.load_dict(scene["sensor"])
+        self.assertIs(nf.prepare(sensor), sensor)
+        loaded = mi.load_dict(scene)
+        expected = np.array(mi.render(nf.prepare(loaded), spp=2, seed=1))
+        np.testing.assert_array_equal(np.array(mi.render(loaded, sensor=sensor, spp=2, seed=1)), expected)
+        with self.assertRaisesRegex(TypeError, "scene is {'type': 'scene'.*: a scene or a sensor as mi.load_dict"):
+            nf.prepare(scene)
 
     def test_films_of_any_shape_and_filter(self):
         # What a pixel sees is what its own numbers say, so the picture must not depend on who draws them.
@@ -562,6 +575,14 @@ class Fits(unittest.TestCase):
             with self.assertRaises((ValueError, RuntimeError)) as refused:
                 mi.load_dict({**scene, "integrator": {"type": "noisefloor_fits", **inner}})
             self.assertIn(why, f"{refused.exception} {refused.exception.__cause__}")
+        _, fitted = self.fits()
+        frame = dr.freeze(lambda seed: mi.render(fitted, spp=1, seed=seed), state_fn=lambda *_: nf.table())
+        with self.assertRaises(RuntimeError) as refused:
+            frame(mi.UInt32(1))
+        cause = refused.exception
+        while cause.__cause__:
+            cause = cause.__cause__
+        self.assertIn("no function that makes them can be frozen", str(cause))
         scene["integrator"] = {**aov, "inner": {"type": "noisefloor_fits", "inner": path}}
         with self.assertRaises((ValueError, RuntimeError)) as refused:
             mi.render(nf.prepare(mi.load_dict(scene)), spp=1)

@@ -28,12 +28,14 @@ def register() -> None:
     mi.register_integrator("noisefloor_fits", lambda props: integrator(props))
 
 
-def prepare(scene: mi.Scene) -> mi.Scene:
-    """Tells the samplers of the scene's sensors which films they are for, and whether there is a lens; returns the
-    scene."""
+def prepare(scene: mi.Scene | mi.Sensor) -> mi.Scene | mi.Sensor:
+    """Tells the samplers of a scene's sensors, or of a sensor that is loaded by itself, which films they are for, and
+    whether there is a lens; returns what was given."""
+    if not isinstance(scene, (mi.Scene, mi.Sensor)):
+        raise TypeError(f"scene is {scene!r:.200}: a scene or a sensor as mi.load_dict() returns it is expected")
     # Mitsuba makes equal samplers of several sensors one.
     sensors: dict[Any, list[mi.Sensor]] = {}
-    for sensor in scene.sensors():
+    for sensor in scene.sensors() if isinstance(scene, mi.Scene) else [scene]:
         if hasattr(sensor.sampler(), "follow"):
             sensors.setdefault(sensor.sampler(), []).append(sensor)
     for sampler, those in sensors.items():

@@ -84,6 +84,10 @@ def _of_all(values, count):
 
 
 def _check(film, sampler, scene, inner, count):
+    # Dr.Jit would end the process, or speak of loops.
+    freezing = getattr(dr.JitFlag, "FreezingScope", None)
+    if freezing is not None and dr.flag(freezing):
+        raise ValueError("noisefloor_fits: fits are computed by the CPU, and no function that makes them can be frozen")
     if not film.rfilter().is_box_filter() or film.sample_border():
         raise ValueError("noisefloor_fits: the film needs a box filter, and no sample_border")
     if mi.has_flag(film.flags(), mi.FilmFlags.Special):

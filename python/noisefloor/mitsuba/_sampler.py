@@ -138,6 +138,8 @@ def kind():
 
         def __init__(self, props):
             super().__init__(props)
+            if not self.sample_count():
+                raise ValueError("noisefloor: sample_count is 0: it must be 1 at least")
             names = "white", "scramble", "lens"
             self.white, self.scramble, self.lens = (option(props, "noisefloor", name, False) for name in names)
             self.size = tuple(option(props, "noisefloor", name, 0) for name in ("width", "height"))
