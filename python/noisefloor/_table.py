@@ -187,8 +187,7 @@ class Table:
         """Adds items behind the last: of a replay buffer, say.
 
         Args:
-            importance: shape (count,), finite and at least 0. One that items are to have until they are first updated
-                is the largest so far.
+            importance: shape (count,), finite and at least 0. Items of the largest so far are soon drawn, and updated.
         """
         importance = _arrays.array("importance", importance)
         _arrays.check_shape("importance", importance, (importance.size,), "a number for each new item")

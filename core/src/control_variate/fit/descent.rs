@@ -161,9 +161,10 @@ pub(crate) fn descend<R: Real>(
             descent.step(solution, gradient, (scales, units), first, second, &mut bias);
         }
         let residual = objective.residual_square(channel, solution);
-        let (is_fit, is_nearer) = (residual <= square, residual < start);
+        let is_fit = residual <= square;
         if !is_fit {
             // What came nearer than its start is a start for the next.
+            let is_nearer = residual < start;
             if !is_nearer {
                 solution.fill(R::ZERO);
             }
