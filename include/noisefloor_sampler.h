@@ -13,14 +13,16 @@
  * GPUs read faster what is stored elsewhere for each pixel of a row: entry i at spread(i) = i ^ (i >> 6 & 63u). So
  * store it there, and define NOISEFLOOR_TABLE(i) as table[spread(i)].
  *
- * In OpenCL C and Metal, which have no global buffers, the table is the last argument of a draw, `global` or `device`:
- * nfs_draw2(s, table). It is called `table` in NOISEFLOOR_TABLE, too, which without a definition is table[i].
+ * With NFS_BUFFER defined as the type of an entry, `const unsigned` in CUDA or `__constant const uint` in OpenCL C say,
+ * the table is the last argument of a draw: nfs_draw2(s, table). NOISEFLOOR_TABLE may then use `table`, and without a
+ * definition is table[i]. In OpenCL C and Metal, which have no global buffers, it always is: `__global` or `device`.
  *
- * For HLSL by another compiler than DXC, glslang say, define NFS_HLSL.
+ * For HLSL by another compiler than DXC, glslang say, define NFS_HLSL. For a table of another size, of 2^NFS_SIDE x
+ * 2^NFS_SIDE pixels with 2^NFS_BITS entries each (`fsot sampler --size 64` has a side of 6), define these.
  *
- * Functions and arguments are those of noisefloor.h. At indices 0 and 1 the numbers of all domains repeat every 32
- * pixels: seeds of further numbers need the pixel, too. State is 16 bytes. GLSL needs version 400 or ES 310, there with
- * a table of highp uint.
+ * Functions and arguments are those of noisefloor.h, and nfs has the bytes of nf_sampler. Drawing twice gives the same
+ * numbers; each decision needs a domain. At indices 0 and 1 the numbers of all domains repeat every 32 pixels: seeds of
+ * further numbers need the pixel, too. GLSL needs version 400 or ES 310, there with a table of highp uint.
  */
 #ifndef NOISEFLOOR_SAMPLER_H
 #define NOISEFLOOR_SAMPLER_H
@@ -47,11 +49,15 @@ typedef uint nfs_uint;
 #elif defined(__METAL_VERSION__)
 #define NFS_FUNCTION static inline
 #define NFS_REVERSE(a) metal::reverse_bits(a)
+#if !defined(NFS_BUFFER)
 #define NFS_BUFFER device const uint
+#endif
 typedef uint nfs_uint;
 #elif defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__) || defined(__OPENCL_CPP_VERSION__)
 #define NFS_FUNCTION static inline
+#if !defined(NFS_BUFFER)
 #define NFS_BUFFER __global const uint
+#endif
 typedef uint nfs_uint;
 #elif defined(__CUDACC__) || defined(__HIPCC__)
 #define NFS_FUNCTION static inline __host__ __device__
@@ -70,8 +76,7 @@ typedef uint32_t nfs_uint;
 
 /* The low bits up to `at`, above them `bits` of the high ones; and a bit as many times as there is room. */
 #if !defined(NFS_INSERT)
-#define NFS_INSERT(low, high, at, bits) \
-    ((((high) & ((1u << (bits)) - 1u)) << (at)) | ((low) & ((1u << (at)) - 1u)))
+#define NFS_INSERT(low, high, at, bits) ((((high) & ((1u << (bits)) - 1u)) << (at)) | ((low) & ((1u << (at)) - 1u)))
 #define NFS_SIGN(a, k) (0u - (((a) >> (k)) & 1u))
 #endif
 
@@ -84,6 +89,16 @@ typedef uint32_t nfs_uint;
 #else
 #define NFS_TABLE
 #define NFS_GIVEN
+#if !defined(NOISEFLOOR_TABLE)
+#error "noisefloor_sampler.h: define NOISEFLOOR_TABLE(i), how entry i of the table is read, before it is included"
+#endif
+#endif
+
+#if !defined(NFS_SIDE)
+#define NFS_SIDE 5
+#endif
+#if !defined(NFS_BITS)
+#define NFS_BITS 6
 #endif
 
 #if !defined(nfs_float)
@@ -191,28 +206,36 @@ NFS_FUNCTION nfs_point nfs_place(nfs s)
     return p;
 }
 
-/* The point of a place, of whose x and y the lowest 5 bits count, and of a number whose bits are reversed. */
+/* An entry of the table: the only names that NOISEFLOOR_TABLE can meet. */
+NFS_FUNCTION nfs_uint nfs_entry(nfs_uint nfs_i NFS_TABLE)
+{
+    return NOISEFLOOR_TABLE(nfs_i);
+}
+
+/* The point of a place, of whose x and y the lowest NFS_SIDE bits count, and of a number whose bits are reversed. */
 NFS_FUNCTION nfs_point nfs_pair(nfs_uint x, nfs_uint y, nfs_uint first NFS_TABLE)
 {
-    nfs_uint pixel = NFS_INSERT(x, y, 5, 5); /* in the lowest 10 bits */
+    nfs_uint pixel = NFS_INSERT(x, y, NFS_SIDE, NFS_SIDE); /* in the lowest bits */
     nfs_uint second = first ^ (first << 16);
     nfs_point p;
     second ^= (second & 0x00ff00ffu) << 8;
     second ^= (second & 0x0f0f0f0fu) << 4;
     second ^= (second & 0x33333333u) << 2;
     second ^= (second & 0x55555555u) << 1;
-    p.x = first ^ (NOISEFLOOR_TABLE(NFS_INSERT(first >> 26, pixel, 6, 10)) << 16);
-    p.y = second ^ (NOISEFLOOR_TABLE(NFS_INSERT(second >> 26, pixel, 6, 10)) & 0xffff0000u);
-    p.x ^= (NFS_INSERT(p.x >> 24, pixel, 8, 10) * 0x9e3779b9u) >> 8;
-    p.y ^= (NFS_INSERT(p.y >> 24, pixel, 8, 10) * 0xc13fa9a9u) >> 8;
+    p.x = nfs_entry(NFS_INSERT(first >> (32 - NFS_BITS), pixel, NFS_BITS, 2 * NFS_SIDE) NFS_GIVEN);
+    p.y = nfs_entry(NFS_INSERT(second >> (32 - NFS_BITS), pixel, NFS_BITS, 2 * NFS_SIDE) NFS_GIVEN);
+    p.x = first ^ (p.x << 16);
+    p.y = second ^ (p.y & 0xffff0000u);
+    p.x ^= (NFS_INSERT(p.x >> 24, pixel, 8, 2 * NFS_SIDE) * 0x9e3779b9u) >> 8;
+    p.y ^= (NFS_INSERT(p.y >> 24, pixel, 8, 2 * NFS_SIDE) * 0xc13fa9a9u) >> 8;
     return p;
 }
 
-/* Values' shift modulo 1. */
+/* In [0, 1); scrambled exclusive-or a hash, which keeps nets. */
 NFS_FUNCTION nfs_float nfs_unit(nfs s, nfs_uint value, nfs_uint number)
 {
     if ((s.flags & 1u) != 0u)
-        value += nfs_mix(s.domain + 0x9e3779b9u * number);
+        value ^= nfs_mix(s.domain + 0x9e3779b9u * number);
     return NFS_FLOAT(value >> 8) * (1.0f / 16777216.0f);
 }
 

@@ -65,7 +65,7 @@ inline void print_usage(FILE *to, const Program &program)
         "--accumulate: rows get passes of N samples, one after the other, into accumulators.\n"
         "--bounces: how many reflections paths have, instead of as many as the scene says.\n"
         "--mis: direct light by two techniques, a half of the samples each: light sampling and direction sampling.\n"
-        "--scramble: seeds shift the values of tile and default: exactly unbiased, and not as good.\n"
+        "--scramble: seeds scramble the values of tile and default: exactly unbiased, and not as good.\n"
         "--table: points for the sampler of that name, made elsewhere; their format is in "
         "pathtracer/table_sampler.hpp.\n"
         "--independent: they are independent, where estimators take them for stratified otherwise.\n"

@@ -42,8 +42,8 @@ nf_sampler nf_sampler_white(uint32_t x, uint32_t y, uint32_t frame, uint32_t ind
 nf_sampler nf_sampler_domain(nf_sampler sampler, uint32_t key);
 
 // An independent version of the sampler, and of its children, for each seed but 0, which changes nothing. All values
-// of a dimension are shifted, modulo 1, by a hash of seed and domain: uniform over random seeds, so that estimates are
-// unbiased, at a cost of quality. For good images take another frame instead.
+// of a dimension are exclusive-or a hash of seed and domain: uniform over random seeds, so that estimates are unbiased.
+// Nets stay nets; neighbours' errors vanish less through a filter. For good images take another frame instead.
 nf_sampler nf_sampler_scramble(nf_sampler sampler, uint32_t seed);
 
 // Writes `dims` numbers, 1..4, to u[dims]: each in [0, 1), a multiple of 2^-24; nothing if dims is out of range or u
@@ -111,7 +111,7 @@ nf_tile_sampler nf_tile_sampler_pixel(const nf_tile *tile, uint32_t x, uint32_t 
 
 nf_tile_sampler nf_tile_sampler_domain(nf_tile_sampler sampler, uint32_t key); // As nf_sampler_domain().
 
-// As nf_sampler_scramble(): the tile at another place, and shifted.
+// As nf_sampler_scramble(), but the values are shifted, modulo 1.
 nf_tile_sampler nf_tile_sampler_scramble(nf_tile_sampler sampler, uint32_t seed);
 
 // Writes the first `dims` coordinates, 1..4, as nf_sampler_draw() does. Up to tile->dims are optimised together, more

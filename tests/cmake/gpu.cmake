@@ -33,10 +33,11 @@ endfunction()
 add_device_program(opencl OpenCL::OpenCL)
 add_check(gpu opencl gpu_opencl)
 
-# The same draws in GLSL and in HLSL; and what GLSL ES must compile.
+# The same draws in GLSL and in HLSL; and what GLSL ES and the oldest GLSL must compile.
 set(vulkan "")
 set(shaders "")
-foreach(shader IN ITEMS "GLSL sampler.comp -V" "HLSL sampler.hlsl -D -V -S comp -e main" "ES fragment.frag -V")
+foreach(shader IN ITEMS "GLSL sampler.comp -V" "HLSL sampler.hlsl -D -V -S comp -e main" "ES fragment.frag -V"
+        "400 texture.frag -G --aml --amb")
     string(REPLACE " " ";" arguments "${shader}")
     list(POP_FRONT arguments language source)
     set(spirv "${CMAKE_CURRENT_BINARY_DIR}/${source}.spv")
@@ -44,7 +45,7 @@ foreach(shader IN ITEMS "GLSL sampler.comp -V" "HLSL sampler.hlsl -D -V -S comp 
         COMMAND "${glslang}" ${arguments} "-I${root}/include" "-I${root}/tests/gpu" -o "${spirv}"
             "${root}/tests/gpu/${source}" VERBATIM)
     list(APPEND shaders "${spirv}")
-    if(NOT language STREQUAL "ES")
+    if(language MATCHES "SL$")
         list(APPEND vulkan ${language} "${spirv}")
     endif()
 endforeach()

@@ -42,14 +42,14 @@ fn is_even<const N: usize>(points: &[[f32; N]], cut: [u32; N]) -> bool {
     counts.iter().all(|count| count * counts.len() == points.len())
 }
 
-/// The first 2^m points, and every later run of as many, are (0, m, 2)-nets: of all pixels, in the root, a domain and a
-/// white one.
+/// The first 2^m points, and every later run of as many, are (0, m, 2)-nets: of all pixels, in the root, a domain, a
+/// white one and a scrambled one.
 #[test]
 fn runs_are_nets() {
     for pixel in 0..PIXELS {
         let Sampler { x, y, .. } = root(pixel);
         let white = Sampler::white(x.into(), y.into(), 0, 0).domain(pixel);
-        for sampler in [root(pixel), root(pixel).domain(pixel), white] {
+        for sampler in [root(pixel), root(pixel).domain(pixel), white, root(pixel).scramble(pixel + 1)] {
             for m in [0, 1, 2, 3, 4, 6, 9] {
                 let n = 1 << m;
                 for first in [0, n, 5 * n] {
@@ -68,7 +68,7 @@ fn four_numbers_are_nets() {
     // Of 4 to 512 points.
     let strengths = [1, 1, 1, 2, 2, 2, 3, 3];
     for pixel in (0..PIXELS).step_by(61) {
-        for sampler in [root(pixel), root(pixel).domain(3)] {
+        for sampler in [root(pixel), root(pixel).domain(3), root(pixel).scramble(3)] {
             for (m, t) in (2..).zip(strengths) {
                 let points: Vec<[f32; 4]> = (0..1 << m).map(|i| sampler.moved(0, 0, i).draw()).collect();
                 let cuts = (0..6_u32.pow(4)).map(|k| [k % 6, k / 6 % 6, k / 36 % 6, k / 216]);

@@ -89,7 +89,7 @@ pub extern "C" fn nf_tile_sampler_domain(sampler: nf_tile_sampler, key: u32) -> 
     put(sampler.tile, of(&NO_TILE, &sampler).domain(key))
 }
 
-/// As nf_sampler_scramble(): the tile at another place, and shifted.
+/// As nf_sampler_scramble(), but the values are shifted, modulo 1.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_tile_sampler_scramble(sampler: nf_tile_sampler, seed: u32) -> nf_tile_sampler {
     put(sampler.tile, of(&NO_TILE, &sampler).scramble(seed))

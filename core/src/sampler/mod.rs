@@ -52,7 +52,7 @@ pub struct Sampler {
     pub flags: u32,
 }
 
-/// Values are shifted by hashes of the domain.
+/// Values are exclusive-or hashes of the domain.
 const SCRAMBLED: u32 = 1;
 /// Pixels are anywhere in the table, so that the error is white.
 const WHITE: u32 = 2;
@@ -89,10 +89,10 @@ impl Sampler {
 
     /// An independent version for each seed but 0; seed 0 changes nothing.
     ///
-    /// It is the table at another place, with all values of each dimension shifted, modulo 1, by a hash of seed and
-    /// domain. Over random seeds every value is uniform, so estimates are unbiased, as far as a hash of 32 bits is
-    /// random. The shift costs quality: where good images are wanted, and not exact unbiasedness, take another frame
-    /// instead. Children of a scrambled sampler are scrambled.
+    /// It is the table at another place, with all values of each dimension exclusive-or a hash of seed and domain. Over
+    /// random seeds every value is uniform, so estimates are unbiased, as far as a hash of 32 bits is random. Nets stay
+    /// nets, but neighbours' errors vanish less through a filter: where good images are wanted, and not exact
+    /// unbiasedness, take another frame instead. Children of a scrambled sampler are scrambled.
     #[inline]
     #[must_use]
     pub const fn scramble(self, seed: u32) -> Sampler {
@@ -121,7 +121,7 @@ impl Sampler {
         let mut fixed = net::point::<N>(self);
         if self.flags & SCRAMBLED != 0 {
             for (number, value) in (1..).zip(&mut fixed) {
-                *value = value.wrapping_add(mix(self.domain.wrapping_add(GOLDEN.wrapping_mul(number))));
+                *value ^= mix(self.domain.wrapping_add(GOLDEN.wrapping_mul(number)));
             }
         }
         fixed.map(unit)

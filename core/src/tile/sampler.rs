@@ -75,8 +75,9 @@ impl<'a> Sampler<'a> {
         Sampler { domain: child(self.domain, key), ..self }
     }
 
-    /// An independent version for each seed but 0, which changes nothing, as the default sampler's: the tile at another
-    /// place, and shifted.
+    /// An independent version for each seed but 0, which changes nothing: the tile at another place, all values of each
+    /// dimension shifted, modulo 1, by a hash of seed and domain. Tiles' points are seldom nets, and the shift keeps
+    /// their distances.
     #[inline]
     #[must_use]
     pub const fn scramble(self, seed: u32) -> Sampler<'a> {

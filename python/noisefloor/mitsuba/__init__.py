@@ -1,6 +1,19 @@
 """noisefloor in Mitsuba 3: a sampler, `{"type": "noisefloor"}`, and an integrator, `{"type": "noisefloor_fits"}`.
 
 `register()` makes both known to the variant that is set; `prepare(scene)` tells samplers which films they are for.
+
+`noisefloor` has these parameters:
+
+- `sample_count` (4), `seed` (0): samples of a pixel; the frame, to which a render's seed is added.
+- `white` (False): neighbours know nothing of each other, for denoisers made for white noise.
+- `scramble` (False): values are uniform over seeds, for gradients and light tracing.
+- `width`, `height`, `lens`: the film, and whether the sensor has an aperture, where `prepare` cannot tell.
+
+`noisefloor_fits` has these:
+
+- `inner`: the integrator that renders.
+- `order` (2), `stride` (8): of the polynomials; pixels from one window of 8 x 8 to the next, 1 to 8.
+- `known` (True): also the light without its shadows, where one rectangle lights diffuse surfaces.
 """
 
 from __future__ import annotations

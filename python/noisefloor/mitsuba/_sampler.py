@@ -70,7 +70,7 @@ def draw(domain, x, y, first, second=False, scrambled=False, few=False):
     values = _pair(((y & (SIZE - 1)) << 5) | (x & (SIZE - 1)), first, few)
     if scrambled:
         number = 3 if second else 1
-        values = [v + _mix(domain + (FINE[0] * (number + k) & 0xFFFFFFFF)) for k, v in enumerate(values)]
+        values = [v ^ _mix(domain + (FINE[0] * (number + k) & 0xFFFFFFFF)) for k, v in enumerate(values)]
     return [mi.Float(v >> 8) * (1 / 16777216) for v in values]
 
 
