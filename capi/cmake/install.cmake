@@ -1,9 +1,13 @@
 # What goes where under the prefix. Nothing installed names the prefix, so it may be moved.
 include(CMakePackageConfigHelpers)
-foreach(folder IN ITEMS LIBDIR INCLUDEDIR)
+foreach(folder IN ITEMS LIBDIR INCLUDEDIR DATADIR DOCDIR)
     if(IS_ABSOLUTE "${CMAKE_INSTALL_${folder}}")
-        message(FATAL_ERROR
-            "noisefloor: CMAKE_INSTALL_${folder} is ${CMAKE_INSTALL_${folder}}: it must be relative to the prefix")
+        file(RELATIVE_PATH relative "${CMAKE_INSTALL_PREFIX}" "${CMAKE_INSTALL_${folder}}")
+        if(relative MATCHES "^\\.\\./")
+            message(FATAL_ERROR "noisefloor: CMAKE_INSTALL_${folder} is ${CMAKE_INSTALL_${folder}}: it must be within "
+                "the prefix, ${CMAKE_INSTALL_PREFIX}, or relative to it")
+        endif()
+        set(CMAKE_INSTALL_${folder} "${relative}")
     endif()
 endforeach()
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/noisefloor")
@@ -16,6 +20,11 @@ foreach(header IN ITEMS noisefloor.h noisefloor.hpp noisefloor_sampler.h)
 endforeach()
 file(REAL_PATH "${headers}/noisefloor" parts)
 install(DIRECTORY "${parts}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" FILES_MATCHING PATTERN "*.h")
+foreach(licence IN ITEMS LICENSE-MIT LICENSE-APACHE)
+    file(REAL_PATH "${licence}" licence)
+    install(FILES "${licence}" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+endforeach()
+install(FILES ../THIRD_PARTY.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" OPTIONAL)
 # The tiles as files: for programs that read them (nf_tile_from_bytes), in place of the library's own.
 # Outside the workspace there are none.
 set(tilesdir "")
@@ -49,6 +58,11 @@ install(FILES "${CMAKE_CURRENT_BINARY_DIR}/noisefloorConfig.cmake"
 
 file(RELATIVE_PATH prefix_from_pc "/prefix/${pkgconfig_dir}" "/prefix")
 string(REGEX REPLACE "/$" "" prefix_from_pc "${prefix_from_pc}")
+set(pc_prefix "\${pcfiledir}/${prefix_from_pc}")
+# pkg-config leaves out the system's own folders only by their names.
+if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+    set(pc_prefix /usr)
+endif()
 list(TRANSFORM mathematics PREPEND "-l" OUTPUT_VARIABLE libs_private)
 configure_file(cmake/noisefloor.pc.in noisefloor.pc @ONLY)
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/noisefloor.pc" DESTINATION "${pkgconfig_dir}")

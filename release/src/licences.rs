@@ -2,9 +2,11 @@
 
 use crate::packages::PUBLISHED;
 use anyhow::{Context, Result, bail};
+use serde_json::Value;
 use spdx::{Expression, ParseMode};
 use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
 
 use xtask::{paths, run};
 
@@ -13,6 +15,8 @@ const ALLOWED: [&str; 10] =
     ["0BSD", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "BSL-1.0", "ISC", "MIT", "Unicode-3.0", "Unlicense", "Zlib"];
 /// What may also be in programs that only build and test, which nobody is given.
 const ALLOWED_IN_DEVELOPMENT: [&str; 2] = ["MPL-2.0", "NCSA"];
+/// Those that ask for no notice beside the licences that we ship anyway.
+const WITHOUT_NOTICE: [&str; 3] = ["0BSD", "Apache-2.0", "Unlicense"];
 /// Workspaces of their own: the page to play with, which is given away, and the fuzz targets.
 const PAGE: &str = "docs/playground/Cargo.toml";
 const FUZZ: &str = "fuzz/Cargo.toml";
@@ -20,8 +24,8 @@ const FUZZ: &str = "fuzz/Cargo.toml";
 const INTRODUCTION: &str = "\
 # Packages of others
 
-Written by `cargo xtask licences`; do not edit. Licences are as their authors declare them, for all targets; the full
-texts come with each package's source. A test compares this file with each Cargo.lock, and every licence with those that
+Written by `cargo xtask licences`; do not edit. Licences are as their authors declare them, for all targets. At the end
+are the notices that the library must keep; others come with each package's source. A test compares this file with each Cargo.lock, and every licence with those that
 release/src/licences.rs allows.
 ";
 const STANDARD_LIBRARY: &str = "
@@ -59,8 +63,29 @@ fn current() -> Result<String> {
     text += &section(title, &library, &Packages::new());
     text += STANDARD_LIBRARY;
     text += &section("In `fsot` besides, or needed to compile it", &optimiser, &library);
+    let notices = notices(&library)?;
     let shipped = library.into_iter().chain(optimiser).collect();
     text += &section("For building, testing and measuring only; in nothing that is given away", &all, &shipped);
+    Ok(text + &notices)
+}
+
+/// The licence files of the packages whose notice must be kept.
+fn notices(packages: &Packages) -> Result<String> {
+    let mut text = String::new();
+    let metadata = run::read(run::cargo().args(["metadata", "--quiet", "--locked", "--format-version", "1"]))?;
+    let metadata: Value = serde_json::from_str(&metadata).context("cargo metadata wrote no JSON")?;
+    for ((name, version), licence) in packages {
+        if allows(licence, &WITHOUT_NOTICE)? {
+            continue;
+        }
+        let is_it = |one: &&Value| one["name"] == **name && one["version"] == **version;
+        let found = metadata["packages"].as_array().and_then(|all| all.iter().find(is_it));
+        let manifest = found.and_then(|one| one["manifest_path"].as_str());
+        let manifest = manifest.with_context(|| format!("cargo metadata has no {name} {version}"))?;
+        let file = Path::new(manifest).with_file_name("LICENSE.txt");
+        let notice = fs::read_to_string(&file).with_context(|| format!("{name}: cannot read {}", file.display()))?;
+        text += &format!("\n## Notice of {name}\n\n```text\n{}\n```\n", notice.trim());
+    }
     Ok(text)
 }
 

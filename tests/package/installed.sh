@@ -95,13 +95,15 @@ for kind in shared static; do
 done
 
 # Debian's way: the prefix is /usr, libraries are in a folder of the architecture, and $DESTDIR stands before all.
-configure "$own" /usr lib/x86_64-linux-gnu
+configure "$own" /usr /usr/lib/x86_64-linux-gnu
 DESTDIR="$work/a staged install" quiet cmake --install "$own"
 lib="$work/a staged install/usr/lib/x86_64-linux-gnu"
-# The variable's spaces are escaped, too.
-include=$(PKG_CONFIG_PATH=$lib/pkgconfig pkg-config --variable=includedir noisefloor | tr -d '\\')
-[ -f "$include/noisefloor.h" ] || fail "noisefloor.pc in $lib says that headers are in $include, where they are not"
-for name in libnoisefloor.a libnoisefloor.so cmake/noisefloor/noisefloorConfig.cmake; do
+# Of the system's own folders the compiler must not be told.
+flags=$(PKG_CONFIG_PATH=$lib/pkgconfig pkg-config --cflags noisefloor)
+[ -z "$flags" ] || fail "noisefloor.pc in $lib tells the compiler $flags"
+doc=../../share/doc/noisefloor
+for name in libnoisefloor.a libnoisefloor.so cmake/noisefloor/noisefloorConfig.cmake ../../include/noisefloor.h \
+    $doc/LICENSE-MIT $doc/LICENSE-APACHE $doc/THIRD_PARTY.md; do
     [ -f "$lib/$name" ] || fail "$lib/$name was not installed"
 done
 echo "a staged install"
