@@ -90,10 +90,12 @@ fn a_full_disk_below_the_messages_stops_no_run() {
     let mut command = place.command("points -n 10 --iterations 2 --out p.txt");
     command.stderr(full());
     assert_eq!(output(command).status.code(), Some(0));
-    let mut command = place.command("points -n 10 --iterations 2 --out p.txt");
-    command.stdout(full());
-    let output = output(command);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(error(&output).contains("standard output: No space left"), "{}", error(&output));
+    for arguments in ["points -n 10 --iterations 2 --out p.txt", "--version", "tile --help"] {
+        let mut command = place.command(arguments);
+        command.stdout(full());
+        let output = output(command);
+        assert_eq!(output.status.code(), Some(2), "{arguments}");
+        assert!(error(&output).contains("standard output: No space left"), "{}", error(&output));
+    }
     assert_eq!(place.names(), ["p.txt"]);
 }

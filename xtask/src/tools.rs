@@ -86,12 +86,13 @@ pub fn can_install() -> bool {
 }
 
 fn install(packages: &[&str]) -> Result<()> {
-    // The steps that go on beside others install too, and apt-get does not wait for another.
+    // The steps that go on beside others install too, and `apt-get update` does not wait for another.
     let turn = File::open(DEBIAN)?;
     turn.lock()?;
     run::check(run::command("apt-get").args(["update", "-qq"]))?;
     let mut install = run::command("apt-get");
-    install.env("DEBIAN_FRONTEND", "noninteractive").args(["install", "-y", "-qq", "--no-install-recommends"]);
+    install.env("DEBIAN_FRONTEND", "noninteractive").args(["-o", "DPkg::Lock::Timeout=600"]);
+    install.args(["install", "-y", "-qq", "--no-install-recommends"]);
     // What it says of each package would hide what comes before and after.
     run::check(install.args(packages).stdout(Stdio::null()))
 }

@@ -22,7 +22,7 @@ mod tile;
 
 use clap::{Parser, Subcommand};
 use fsot::Error;
-use say::{GONE, is_cut, is_gone, say};
+use say::{GONE, STANDARD_OUTPUT, is_cut, is_gone, say};
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -81,19 +81,22 @@ fn main() -> ExitCode {
             say(&sentence).ok();
             ExitCode::from(interrupt::EXIT)
         }
-        Err(error) => {
-            if !is_cut(&error) {
-                say(&format!("error: {error}")).ok();
-            }
-            ExitCode::from(if is_gone(&error) { GONE } else { FAILURE })
-        }
+        Err(error) => failed(&error),
     }
+}
+
+/// Says what an error is, unless nobody wants to know.
+fn failed(error: &Error) -> ExitCode {
+    if !is_cut(error) {
+        say(&format!("error: {error}")).ok();
+    }
+    ExitCode::from(if is_gone(error) { GONE } else { FAILURE })
 }
 
 /// Prints what clap answers: help, the version or what is wrong with the arguments.
 fn print(answer: &clap::Error) -> ExitCode {
     match answer.print().and_then(|()| std::io::stdout().flush()) {
-        Err(_) if !answer.use_stderr() => ExitCode::from(GONE),
+        Err(error) if !answer.use_stderr() => failed(&Error::io(STANDARD_OUTPUT)(error)),
         _ => ExitCode::from(u8::try_from(answer.exit_code()).unwrap_or(FAILURE)),
     }
 }
