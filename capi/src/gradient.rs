@@ -6,9 +6,9 @@ use crate::status::*;
 use crate::{convert, dispatch};
 use noisefloor_core::minibatch::{self, Batch, Gradient, System};
 
-/// Optimal MIS gradients from explicit per-item gradients, with momentum over steps (6.2.3): averages over the batches
-/// so far of J + 1 floats per parameter. May be moved and copied as nf_cv_accumulator. Without momentum nf_omis_weights
-/// gives the same estimate at the cost of one weighted backward pass.
+/// Optimal MIS gradients from explicit per-item gradients, with momentum over steps (section 6.2.3): averages over the
+/// batches so far of J + 1 floats per parameter. May be moved and copied as nf_cv_accumulator. Without momentum
+/// nf_omis_weights gives the same estimate at the cost of one weighted backward pass.
 #[allow(non_camel_case_types)]
 pub struct nf_gradient {
     _private: (),

@@ -95,12 +95,12 @@ pub unsafe extern "C" fn nf_importance_squared_error(
 }
 
 /// Of each of `rows` items one importance for each of `techniques` tables, from any derivative of the loss by the
-/// output nodes: || dL/dm || of (6.1.4) for one table, those of (6.2.3) for several.
+/// output nodes: || dL/dm || of section 6.1.4 for one table, after section 6.2.3 for several.
 ///
 /// gradient[rows * outputs]: dL/dm, finite. Node k belongs to group k % groups, groups being techniques with
 /// NF_NODES_NORM and half as many with NF_NODES_SIGN: importance[g] is the norm over group g, or importance[2 g],
-/// importance[2 g + 1] those of max(gradient, 0) and max(-gradient, 0). techniques: 1..NF_MIS_MAX_TECHNIQUES.
-/// importance[rows * techniques]: outputs, a row for each item, at most the largest finite float.
+/// importance[2 g + 1] those of max(gradient, 0) and max(-gradient, 0), a split of our own. techniques:
+/// 1..NF_MIS_MAX_TECHNIQUES. importance[rows * techniques]: outputs, a row for each item, at most the largest float.
 ///
 /// NF_ERR_RANGE: split, techniques, or fewer outputs than groups; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]

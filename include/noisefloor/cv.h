@@ -19,7 +19,7 @@ extern "C" {
 #define NF_CV_LEAST_SQUARES 1
 // Estimator: each sample corrected by a ridge fit to all others. Exactly unbiased, nearly with `controls`; no streams.
 #define NF_CV_LEAVE_ONE_OUT 2
-#define NF_CV_K_FOLD 3 // Estimator: each fold corrected by a robust fit to the other folds (4.2.6). Exactly unbiased.
+#define NF_CV_K_FOLD 3 // Estimator: each fold corrected by a robust fit to others (section 4.2.6). Exactly unbiased.
 // Estimator: gradient descent on its own samples (Alg. 2). Biased; see nf_cv_gradient_descent().
 #define NF_CV_GRADIENT_DESCENT 4
 // Estimator: each sample corrected by a fit to those before it (4.30). Exactly unbiased after every sample.
@@ -70,8 +70,8 @@ typedef struct nf_cv_config {
     // follow shadows' edges in them, in groups of 8 and more pixels with values above 0 and others.
     uint32_t edges;
     uint32_t controls; // User-supplied control functions with known integrals (4.18), 0 to 4.
-    // Floats from one sample's u to the next; 0 means dims. A path may be longer than what is regressed (4.3.5); its
-    // first dims coordinates must be uniform for every sample, however short its path.
+    // Floats from one sample's u to the next; 0 means dims. A path may be longer than what is regressed (section
+    // 4.3.5); its first dims coordinates must be uniform for every sample, however short its path.
     uint32_t stride;
     uint32_t solver; // NF_SOLVER_*
     // NF_PRECISION_*, of accumulators. Arrays take the best that the library was built for, images float.
@@ -177,7 +177,7 @@ size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image 
 
 // Estimates the pixels of an image from `samples->n` samples in each: out[wanted pixels * frames]. Pixels of one
 // window and surface share a fit, which follows integrands that change across the window; each pixel is corrected by a
-// fit to the others' samples (4.3.6), even from one sample. Computed in float.
+// fit to the others' samples (section 4.3.6), even from one sample. Computed in float.
 //
 // NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
 // they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and, without `known`, a `ridge`
@@ -208,8 +208,8 @@ typedef struct nf_cv_descent {
 
 // nf_cv_estimate() of one integral by NF_CV_GRADIENT_DESCENT, which `estimator` must be, from a start: `coefficients`
 // are `channels` rows (1 for a luminance ratio) of nf_cv_terms() - 1 floats in the values' unit, and the solution
-// afterwards. The solution of a previous frame is a good start (4.2.6). A channel whose descent ends farther from
-// the values than their mean is that mean; its coefficients are then 0, unless they came nearer than the start.
+// afterwards. The solution of a previous frame is a good start (section 4.2.6). A channel whose descent ends farther
+// from the values than their mean is that mean; its coefficients are then 0, unless they came nearer than the start.
 //
 // Other errors as for nf_cv_estimate(); NF_ERR_RANGE also for the descent, NF_ERR_NOT_FINITE for the start,
 // NF_ERR_UNSUPPORTED for another estimator and `controls`.

@@ -38,8 +38,8 @@ nf_status nf_mis_weight(uint32_t heuristic, float parameter, const float *pdf, c
 // What one sample of technique j adds to the estimate (2.10) with the optimal weights (2.15) of Kondapaneni et al.
 // (2019): w_j f / (n_j p_j) = alpha_j / n_j + (f - sum_k alpha_k p_k) / S, S = sum_k n_k p_k.
 //
-// Unbiased if alpha came from other samples. The term is not 0 where f is: add those samples too. Times the number of
-// samples that are regressed together, it is what a regression is fitted to (4.3.3).
+// Unbiased if alpha came from other samples; of least variance if counts are fixed. The term is not 0 where f is: add
+// those samples too. Times the number of samples regressed together, a regression is fitted to it (section 4.3.3).
 // pdf[techniques]: finite, at least 0, that of the technique positive. counts[techniques]: at least 1.
 // alpha[techniques]: from nf_omis_solve. value: f, not divided by a density. All finite.
 // NF_ERR_RANGE: an argument, or the term in float; NF_ERR_NOT_FINITE.

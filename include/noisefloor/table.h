@@ -141,11 +141,11 @@ nf_status nf_importance_squared_error(const float *output, const float *target, 
     float *importance);
 
 // Of each of `rows` items one importance for each of `techniques` tables, from any derivative of the loss by the
-// output nodes: || dL/dm || of (6.1.4) for one table, those of (6.2.3) for several.
+// output nodes: || dL/dm || of section 6.1.4 for one table, after section 6.2.3 for several.
 // gradient[rows * outputs]: dL/dm, finite. Node k belongs to group k % groups, groups being techniques with
 // NF_NODES_NORM and half as many with NF_NODES_SIGN: importance[g] is the norm over group g, or importance[2 g],
-// importance[2 g + 1] those of max(gradient, 0) and max(-gradient, 0). techniques: 1..NF_MIS_MAX_TECHNIQUES.
-// importance[rows * techniques]: outputs, a row for each item, at most the largest finite float.
+// importance[2 g + 1] those of max(gradient, 0) and max(-gradient, 0), a split of our own. techniques:
+// 1..NF_MIS_MAX_TECHNIQUES. importance[rows * techniques]: outputs, a row for each item, at most the largest float.
 // NF_ERR_RANGE: split, techniques, or fewer outputs than groups; NF_ERR_NOT_FINITE.
 nf_status nf_importance_gradient(const float *gradient, uint32_t rows, uint32_t outputs, uint32_t split,
     uint32_t techniques, float *importance);
@@ -172,9 +172,9 @@ typedef struct nf_importance_arguments {
 nf_status nf_omis_weights(uint32_t solver, float ridge, uint32_t techniques, uint32_t items, const float *pdf,
     const uint32_t *technique, uint32_t batch, float *weight);
 
-// Optimal MIS gradients from explicit per-item gradients, with momentum over steps (6.2.3): averages over the batches
-// so far of J + 1 floats per parameter. May be moved and copied as nf_cv_accumulator. Without momentum nf_omis_weights
-// gives the same estimate at the cost of one weighted backward pass.
+// Optimal MIS gradients from explicit per-item gradients, with momentum over steps (section 6.2.3): averages over the
+// batches so far of J + 1 floats per parameter. May be moved and copied as nf_cv_accumulator. Without momentum
+// nf_omis_weights gives the same estimate at the cost of one weighted backward pass.
 typedef struct nf_gradient nf_gradient;
 
 // Bytes of an nf_gradient, 4 (techniques + 1) per parameter and about 1.4 kB; 0 unless techniques is

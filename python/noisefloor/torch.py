@@ -58,6 +58,7 @@ class ImportanceBatchSampler(Sampler):
         momentum: 0 to 1: of an item's importance, from one visit to the next; none in warm-up.
         techniques: 1 to 16 tables, each with importances of its own; more than 1 is optimal multiple importance
             sampling. A divisor of the batch of all processes. Weights are then slightly biased and may be negative.
+        ridge: 1e-8 to 1e8, of several techniques: how strongly their weights shrink to the balance heuristic's.
         weighted: False gives weights of 1: adaptive sampling, which is biased towards difficult items.
         seed: 0 to 2**63 - 1, the same in all processes, which is why it has a default. PyTorch's `manual_seed` changes
             nothing here.
@@ -74,6 +75,7 @@ class ImportanceBatchSampler(Sampler):
         uniform_fraction: float = 0.2,
         momentum: float = 0.3,
         techniques: int = 1,
+        ridge: float = 2.0,
         weighted: bool = True,
         seed: int = 0,
         process_group: Any = None,
@@ -94,6 +96,7 @@ class ImportanceBatchSampler(Sampler):
         steps = -(-self._n // self._whole) if steps is None else steps
         self._steps = _arrays.integer("steps", steps, 1, 2**63 - 1)
         self._momentum = _arrays.number("momentum", momentum, 0, 1)
+        self._ridge = _arrays.number("ridge", ridge, 1e-8, 1e8)
         self._weighted = bool(weighted)
         self._seed = _arrays.integer("seed", seed, 0, 2**63 - 1)
         techniques = _arrays.integer("techniques", techniques, 1, _c.CONSTANTS["NF_MIS_MAX_TECHNIQUES"])
@@ -189,7 +192,7 @@ class ImportanceBatchSampler(Sampler):
         weight = numpy.empty(self._whole, numpy.float32)
         status = _c.omis_weights(
             _c.CONSTANTS["NF_OMIS_RIDGE"],
-            0,
+            self._ridge,
             techniques,
             self._n,
             _c.data(pdf),

@@ -478,6 +478,19 @@ def test_several_techniques_are_of_groups_of_outputs(techniques, split):
         assert numpy.allclose(table.probabilities(), other.probabilities(), rtol=1e-4)
 
 
+def test_a_large_ridge_gives_the_balance_heuristic():
+    def drawn(**options):
+        sampler = ImportanceBatchSampler(100, 10, warmup=None, techniques=2, seed=4, **options)
+        sampler.update(numpy.random.default_rng(1).lognormal(size=(100, 2)), range(100))
+        next(iter(sampler))
+        index, weight = sampler.batch()
+        mixture = numpy.mean([table.probabilities(index) for table in sampler._tables], 0)
+        return numpy.abs(weight.numpy() * 100 * mixture - 1).max()
+
+    assert drawn(ridge=1e8) < 1e-5 < 0.01 < drawn() < drawn(ridge=0.01)
+    assert drawn(ridge=2) == drawn()
+
+
 def test_several_techniques_weigh_and_learn():
     sampler = ImportanceBatchSampler(300, 32, techniques=4, seed=2)
     model = train.network(outputs=10)
@@ -613,6 +626,7 @@ def test_what_goes_wrong_in_one_process_is_known_to_all(tmp_path):
         (lambda s: s.update_from(differentiated(torch.float32, (3,))), r"logits has the shape \(3,\): .* 2 items"),
         (lambda s: ImportanceBatchSampler("10", 2), "n is '10': an integer"),
         (lambda s: ImportanceBatchSampler([], 2), "n is 0: it must be 1 to"),
+        (lambda s: ImportanceBatchSampler(10, 2, ridge=0), "ridge is 0.0: it must be 1e-08 to"),
         (lambda s: ImportanceBatchSampler(10, 2, process_group="all"), "process_group is given, but torch.distributed"),
         (lambda s: s.update_from(differentiated(torch.float32), split="half"), "split is 'half': it must be one of"),
         (lambda s: s.update_from(differentiated(torch.complex64)), "logits holds torch.complex64: real numbers"),

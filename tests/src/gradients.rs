@@ -85,8 +85,8 @@ pub fn moments(problem: &Problem, counts: &[usize], solver: Solver, batches: usi
     moments
 }
 
-/// Regression by a polynomial of order 6 on [-2, 2] (6.2.4): the loss sum (f(x) - y)^2 over 2,000 points, and the state
-/// that a trainer reaches after some steps of gradient descent.
+/// Regression by a polynomial of order 6 on [-2, 2] (section 6.2.4): the loss sum (f(x) - y)^2 over 2,000 points, and
+/// the state that a trainer reaches after some steps of gradient descent.
 pub struct Regression {
     /// Powers 0..=6 of x / 2, and the target, of each point.
     points: Vec<([f64; 7], f64)>,

@@ -1,7 +1,7 @@
 //! Integrands over the unit cube with their exact integrals.
 //!
-//! `nine` is the set the robust estimator's targets are stated on (4.2.2, 4.3.2, 4.3.5), `held_out` was not looked at
-//! while the first rules were chosen, `adversarial` tries to break them.
+//! `nine` is the set the robust estimator's targets are stated on (sections 4.2.2, 4.3.2, 4.3.5), `held_out` was not
+//! looked at while the first rules were chosen, `adversarial` tries to break them.
 
 use crate::genz::Family;
 use crate::legendre;
@@ -47,12 +47,13 @@ fn listing_4_1(u: &[f64]) -> f64 {
     (-0.8 * x * x + 0.8 * x + 0.3 * x.exp()) * 1.7
 }
 
-/// exp(-sum x), figure 4.6's exponential.
+/// exp(-sum x), for figure 4.6's exponential. The thesis gives neither of its formulas.
 fn exp_of_minus_sum(u: &[f64]) -> f64 {
     (-u.iter().sum::<f64>()).exp()
 }
 
-/// sum over i = 0..D of sin(2 pi x_i (i + 1) / D), figure 4.6's sinusoids; the last dimension carries one full period.
+/// sum over i = 0..D of sin(2 pi x_i (i + 1) / D), for figure 4.6's sum of sinusoids; the last dimension carries one
+/// full period.
 fn sum_of_sines(u: &[f64]) -> f64 {
     let dims = u.len() as f64;
     u.iter().enumerate().map(|(i, &x)| (TAU * x * (i + 1) as f64 / dims).sin()).sum()
@@ -82,8 +83,8 @@ fn light(k: usize, u: f64, v: f64) -> f64 {
     }
 }
 
-/// Three coordinates: a point (u, v) on a light and a third that picks one of four equally likely lights (4.3.5);
-/// the third light is half hidden behind an edge.
+/// Three coordinates: a point (u, v) on a light and a third that picks one of four equally likely lights (section
+/// 4.3.5); the third light is half hidden behind an edge.
 fn four_lights(u: &[f64]) -> f64 {
     light(((u[2] * 4.0) as usize).min(3), u[0], u[1])
 }

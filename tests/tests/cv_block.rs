@@ -1,4 +1,4 @@
-//! One fit shared by the pixels of a block (4.3.6).
+//! One fit shared by the pixels of a block (section 4.3.6).
 
 use crate::cv_support::*;
 use noisefloor::Error;

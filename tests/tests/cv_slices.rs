@@ -1,5 +1,5 @@
 //! Discrete light choices: a fit that knows which coordinate picks a light beats one that takes it for a number
-//! (4.3.5).
+//! (section 4.3.5).
 //!
 //! Many lights as in figure 4.15: random intensities, each falling off with the distance to its own nearest point,
 //! every fourth half hidden. The first two coordinates are a point on the light, the third picks one of the lights.

@@ -1,5 +1,5 @@
-//! Regression on MIS-weighted samples (4.3.3): each technique's weighted samples are an integrand of their own over
-//! primary sample space, fitted on its own, and the estimates are added.
+//! Regression on MIS-weighted samples (section 4.3.3): each technique's weighted samples are an integrand of their own
+//! over primary sample space, fitted on its own, and the estimates are added.
 
 use noisefloor::control_variate::{Config, Estimator, Samples, estimate, workspace_len};
 use noisefloor::mis;

@@ -31,7 +31,7 @@ impl Function {
     }
 }
 
-/// sum over i of sin(2 pi x_i (i + 1) / D), figure 4.6.
+/// sum over i of sin(2 pi x_i (i + 1) / D), for figure 4.6's sum of sinusoids, whose formula the thesis does not give.
 pub(crate) fn sines(dims: usize) -> Function {
     let frequency = move |i: usize| TAU * i as f64 / dims as f64;
     let integral = (1..=dims).map(|i| (1.0 - frequency(i).cos()) / frequency(i)).sum();

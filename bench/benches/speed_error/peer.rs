@@ -2,9 +2,9 @@
 //!
 //! Monomials up to a total degree, the system (4.27) updated sample by sample (4.28), a general dense solver that sizes
 //! and allocates its matrices when called, then the integral of the fit plus the mean of its residuals on the same
-//! samples. The thesis solves with Eigen and does not say by which decomposition, so both usual ones are here. As in
-//! code that is written for readability, the basis functions of a sample are a fresh vector whenever they are needed:
-//! two allocations for each sample.
+//! samples. The thesis solves by complete orthogonal decomposition (section 4.3.5), which is QR with column pivoting
+//! wherever the system has full rank; Cholesky is what is usual. As in code that is written for readability, the basis
+//! functions of a sample are a fresh vector whenever they are needed: two allocations for each sample.
 
 use nalgebra::{DMatrix, DVector};
 use noisefloor_tests::legendre;

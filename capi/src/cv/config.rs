@@ -13,7 +13,7 @@ pub const NF_CV_ROBUST: u32 = 0;
 pub const NF_CV_LEAST_SQUARES: u32 = 1;
 /// Estimator: each sample corrected by a ridge fit to all others. Exactly unbiased, nearly with `controls`; no streams.
 pub const NF_CV_LEAVE_ONE_OUT: u32 = 2;
-/// Estimator: each fold corrected by a robust fit to the other folds (4.2.6). Exactly unbiased.
+/// Estimator: each fold corrected by a robust fit to others (section 4.2.6). Exactly unbiased.
 pub const NF_CV_K_FOLD: u32 = 3;
 /// Estimator: gradient descent on its own samples (Alg. 2). Biased; see nf_cv_gradient_descent().
 pub const NF_CV_GRADIENT_DESCENT: u32 = 4;
@@ -86,8 +86,8 @@ pub struct nf_cv_config {
     pub edges: u32,
     /// User-supplied control functions with known integrals (4.18), 0 to 4.
     pub controls: u32,
-    /// Floats from one sample's u to the next; 0 means dims. A path may be longer than what is regressed (4.3.5); its
-    /// first dims coordinates must be uniform for every sample, however short its path.
+    /// Floats from one sample's u to the next; 0 means dims. A path may be longer than what is regressed (section
+    /// 4.3.5); its first dims coordinates must be uniform for every sample, however short its path.
     pub stride: u32,
     /// NF_SOLVER_*
     pub solver: u32,

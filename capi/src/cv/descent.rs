@@ -33,8 +33,8 @@ pub struct nf_cv_descent {
 
 /// nf_cv_estimate() of one integral by NF_CV_GRADIENT_DESCENT, which `estimator` must be, from a start: `coefficients`
 /// are `channels` rows (1 for a luminance ratio) of nf_cv_terms() - 1 floats in the values' unit, and the solution
-/// afterwards. The solution of a previous frame is a good start (4.2.6). A channel whose descent ends farther from
-/// the values than their mean is that mean; its coefficients are then 0, unless they came nearer than the start.
+/// afterwards. The solution of a previous frame is a good start (section 4.2.6). A channel whose descent ends farther
+/// from the values than their mean is that mean; its coefficients are then 0, unless they came nearer than the start.
 ///
 /// Other errors as for nf_cv_estimate(); NF_ERR_RANGE also for the descent, NF_ERR_NOT_FINITE for the start,
 /// NF_ERR_UNSUPPORTED for another estimator and `controls`.

@@ -95,7 +95,7 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
 
 /// Estimates the pixels of an image from `samples->n` samples in each: out[wanted pixels * frames]. Pixels of one
 /// window and surface share a fit, which follows integrands that change across the window; each pixel is corrected by a
-/// fit to the others' samples (4.3.6), even from one sample. Computed in float.
+/// fit to the others' samples (section 4.3.6), even from one sample. Computed in float.
 ///
 /// NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
 /// they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and, without `known`, a `ridge`

@@ -130,7 +130,7 @@ pub struct Config {
     /// User-supplied control functions with known integrals (4.18), 0 to 4.
     pub controls: usize,
     /// Numbers from one sample's coordinates to the next; 0 means `dims`. A path may be longer than what is regressed
-    /// (4.3.5); its first `dims` coordinates must exist, uniform, for every sample, however short its path.
+    /// (section 4.3.5); its first `dims` coordinates must exist, uniform, for every sample, however short its path.
     pub stride: usize,
     /// How least-squares systems are solved.
     pub solver: Solver,

@@ -28,7 +28,7 @@ pub const fn gradient_len(techniques: usize, parameters: usize) -> usize {
 }
 
 /// Gradients of the mean loss from each drawn item's own, for any number of parameters, with momentum over steps
-/// (6.2.3).
+/// (section 6.2.3).
 ///
 /// Each parameter has the averages of its balance estimate and of its b over the batches so far, in `f32`; what they
 /// share is a [`System`]. With beta = 0 the estimate is that of [`weights`](super::weights()), whose one backward pass

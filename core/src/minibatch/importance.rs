@@ -1,4 +1,4 @@
-//! How important an item is: the norm of the loss's derivative by the network's outputs (6.1.4).
+//! How important an item is: the norm of the loss's derivative by the network's outputs (section 6.1.4).
 //!
 //! By the chain rule the norm of an item's parameter gradient is at most a constant times it, and it needs no backward
 //! pass. Everything is in `f64` inside: finite inputs of any size give finite results, one beyond the range of `f32`
@@ -114,8 +114,8 @@ pub enum Split {
 /// Importances for several distributions, from the derivative of the loss by each output node.
 ///
 /// Node k belongs to group k mod G, so that every node is covered; G is `importance.len()` with [`Split::Norm`] and
-/// half of it with [`Split::Sign`]. (6.2.3) proposes a subset of the nodes, which leaves gradients to the other nodes
-/// without an importance.
+/// half of it with [`Split::Sign`]. Section 6.2.3 proposes a subset of the nodes, which leaves gradients to the other
+/// nodes without an importance, or norms of groups; it does not split by sign, which is our own.
 ///
 /// Errors, which leave `importance` as it was: [`Error::Range`] unless there are 1..=16 importances, an even number
 /// with [`Split::Sign`], and at least one node per group; [`Error::NotFinite`] for NaN or infinity in `gradient`.

@@ -2,9 +2,9 @@
 //! (chapter 6).
 //!
 //! - [`Table`]: a persistent importance for each item of a data set; draws batches, follows what training learns
-//!   (6.1.3).
+//!   (section 6.1.3).
 //! - [`shuffle()`]: the items in a random order, without an array: the first epoch.
-//! - [`importance`]: how important an item is, from the output layer alone (6.1.4).
+//! - [`importance`]: how important an item is, from the output layer alone (section 6.1.4).
 //! - [`weights()`]: one weight per drawn item of several importance distributions, so that the optimal MIS gradient
 //!   costs one weighted backward pass; [`Gradient`]: the same from explicit per-item gradients, with momentum over
 //!   steps (section 6.2).

@@ -10,9 +10,9 @@ use crate::real::Real;
 /// `alpha_j / n_j + (f - sum_k alpha_k p_k) / S`, S = sum_k n_k p_k.
 ///
 /// The sum over all samples is the estimate, unbiased if alpha, from
-/// [`OptimalMis::alpha`](super::OptimalMis::alpha), came from other samples. The term is not 0 where f is; leaving such
-/// samples out keeps the mean and loses part of the gain. These terms, times the number of samples that are regressed
-/// together, are what a regression control variate is fitted to (4.3.3).
+/// [`OptimalMis::alpha`](super::OptimalMis::alpha), came from other samples; of least variance if counts are fixed. The
+/// term is not 0 where f is; leaving such samples out keeps the mean and loses part of the gain. These terms, times the
+/// number of samples that are regressed together, are what a regression control variate is fitted to (section 4.3.3).
 ///
 /// - `pdf`: p_k(x), finite and at least 0, positive for the technique that drew the point; `counts`: n_k, at least 1;
 ///   `alpha`: finite; all of one length in 1..=16.

@@ -1,4 +1,4 @@
-//! Point-set filtering (5.3.1): which points make a subclass.
+//! Point-set filtering (section 5.3.1): which points make a subclass.
 
 use super::function::ClassFunction;
 use super::weighted::ClassCoordinates;

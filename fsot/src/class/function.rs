@@ -17,7 +17,7 @@ pub struct Step {
     pub value: f32,
 }
 
-/// A class function w (5.3.1): how much the point at a class coordinate takes part in the class, in [0, 1].
+/// A class function w (section 5.3.1): how much the point at a class coordinate takes part in the class, in [0, 1].
 ///
 /// The points with `w > z` make the subclass of threshold z. A coordinate is a number in [0, 1) (the index space of the
 /// points), or two (the image plane); a function of one number uses the first.

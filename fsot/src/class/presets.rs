@@ -19,7 +19,9 @@ pub fn single(dims: usize) -> Vec<Class> {
 }
 
 /// Figure 5.8: the first half of the points is red, the second blue; red, blue and their union are uniform.
-/// The union counts twice: then neither it nor the colors are much worse than they could be alone.
+///
+/// A deviation: figure 5.5 gives each half and the union equal priority, here the union counts twice. Then neither it
+/// nor the colors are much worse than they could be alone.
 pub fn two_colors(dims: usize) -> Vec<Class> {
     let target = uniform(dims);
     vec![

@@ -2,7 +2,7 @@
 
 use noisefloor::rng::Rng;
 
-/// A unit vector: with probability `axis_priority` along an axis (5.5.1), else uniform on the sphere.
+/// A unit vector: with probability `axis_priority` along an axis (section 5.5.1), else uniform on the sphere.
 pub(crate) fn direction<const D: usize>(rng: &mut Rng, axis_priority: f32) -> [f32; D] {
     let axis = rng.uniform_f32() < axis_priority;
     let mut direction = [0.0; D];

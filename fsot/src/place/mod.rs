@@ -1,5 +1,5 @@
-//! Object placement: things of several colours and sizes, spread evenly whichever of them one looks at (5.5.1, figure
-//! 5.15).
+//! Object placement: things of several colours and sizes, spread evenly whichever of them one looks at (section 5.5.1,
+//! figure 5.15).
 
 mod draw;
 mod object;

@@ -222,7 +222,7 @@ mod tests {
 
     #[test]
     fn windows_move_by_the_step() {
-        // The thesis's 18 frames and 1,000 points, 250 of them new in each frame.
+        // Figure 5.13's 18 frames and 1,000 points, 250 of them new in each frame; its 5,500 points would be 19 frames.
         let all = windows(18, 1000, 250, false);
         assert_eq!(all.points(), 5250);
         assert_eq!(all.of_frame(0), [0..1000, 1000..1000]);

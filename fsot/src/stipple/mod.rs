@@ -1,4 +1,4 @@
-//! Stippling: pictures drawn with dots (5.5.1, figures 5.10-5.13).
+//! Stippling: pictures drawn with dots (section 5.5.1, figures 5.10-5.13).
 
 mod animation;
 mod options;

@@ -1,4 +1,4 @@
-//! A fit to several pixels of several samples each, whose integrals are random about a linear trend (4.3.6).
+//! A fit to several pixels of several samples each, whose integrals are random about a linear trend (section 4.3.6).
 
 use super::linear::{Matrix, least_squares};
 use super::regression::{Design, Regression};

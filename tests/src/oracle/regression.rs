@@ -1,4 +1,4 @@
-//! Fits of a polynomial to samples and the estimators made of one fit (4.2.2, 4.2.6, 4.3.6).
+//! Fits of a polynomial to samples and the estimators made of one fit (sections 4.2.2, 4.2.6, 4.3.6).
 
 use super::linear::{Matrix, least_squares};
 use crate::legendre;

@@ -63,7 +63,7 @@ pub(crate) struct About<'a, R> {
 
 /// As [`estimate`](crate::control_variate::estimate) by gradient descent, starting from `coefficients`, a row of
 /// `terms - 1` numbers for each channel that is regressed, in the values' unit, and leaving the solution there: a
-/// previous frame's solution is a good start for the next (4.2.6).
+/// previous frame's solution is a good start for the next (section 4.2.6).
 ///
 /// # Errors
 /// As for [`estimate`](crate::control_variate::estimate) by this estimator, whose workspace it needs, and

@@ -1,4 +1,4 @@
-//! Fits shared by neighbouring pixels (4.3.6): each pixel is corrected by a fit to the other pixels' samples.
+//! Fits shared by neighbouring pixels (section 4.3.6): each pixel is corrected by a fit to the other pixels' samples.
 //!
 //! The estimate is mean f_p - b' mean phi_p with b from all samples of a window but the pixel's own. It needs no more
 //! than one sample in each pixel, and keeps whatever stratification the samples have, within a pixel and across pixels,
