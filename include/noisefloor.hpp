@@ -709,6 +709,8 @@ public:
             made.integrals_ = integrals;
             code = nf_omis_init(where.data(), where.bytes(), made.techniques_, integrals, counts.data(), &made.handle_);
         }
+        if (integrals == 0)
+            return detail::finish(detail::outcome{NF_ERR_RANGE, "integrals must be at least 1"}, made);
         nf_omis_arguments all{};
         all.counts = counts.data(), all.techniques = static_cast<std::uint32_t>(counts.size());
         all.integrals = integrals;
@@ -729,18 +731,20 @@ public:
     {
         const bool fits = out.size() == integrals_;
         return finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, out.data(), nullptr)
-                           : NF_ERR_LENGTH);
+                           : NF_ERR_LENGTH,
+                      how, ridge);
     }
     // out[integrals * techniques], an integral after the other
     returned<void> alpha(span<float> out, solver how = solver::ridge, float ridge = 0.0f) const
     {
         const bool fits = techniques_ > 0 && out.size() % techniques_ == 0 && out.size() / techniques_ == integrals_;
         return finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, nullptr, out.data())
-                           : NF_ERR_LENGTH);
+                           : NF_ERR_LENGTH,
+                      how, ridge);
     }
     returned<void> next_batch(solver how = solver::ridge, float ridge = 0.0f, float beta = 1.0f)
     {
-        return finish(nf_omis_next_batch(handle_, static_cast<std::uint32_t>(how), ridge, beta));
+        return finish(nf_omis_next_batch(handle_, static_cast<std::uint32_t>(how), ridge, beta), how, ridge, beta);
     }
     returned<void> merge(const optimal_mis &other)
     {
@@ -749,7 +753,13 @@ public:
     nf_omis *handle() const noexcept { return handle_; }
 
 private:
-    returned<void> finish(nf_status code) const { return detail::finish(detail::made(handle_, code)); }
+    returned<void> finish(nf_status code, solver how = solver::ridge, float ridge = 0.0f, float beta = 1.0f) const
+    {
+        nf_omis_arguments all{};
+        all.techniques = techniques_;
+        all.solver = static_cast<std::uint32_t>(how), all.ridge = ridge, all.beta = beta;
+        return detail::finish(detail::blame(detail::made(handle_, code), all));
+    }
 
     nf_omis *handle_ = nullptr;
     std::uint32_t techniques_ = 0, integrals_ = 0;

@@ -1,13 +1,16 @@
-# What goes where under the prefix. Nothing installed names the prefix, so it may be moved.
+# What goes where under the prefix. Nothing installed names the prefix, so it may be moved, unless a folder is outside.
 include(CMakePackageConfigHelpers)
 foreach(folder IN ITEMS LIBDIR INCLUDEDIR DATADIR DOCDIR)
     if(IS_ABSOLUTE "${CMAKE_INSTALL_${folder}}")
         file(RELATIVE_PATH relative "${CMAKE_INSTALL_PREFIX}" "${CMAKE_INSTALL_${folder}}")
-        if(relative MATCHES "^\\.\\./")
-            message(FATAL_ERROR "noisefloor: CMAKE_INSTALL_${folder} is ${CMAKE_INSTALL_${folder}}: it must be within "
-                "the prefix, ${CMAKE_INSTALL_PREFIX}, or relative to it")
+        if(NOT relative MATCHES "^\\.\\./")
+            set(CMAKE_INSTALL_${folder} "${relative}")
         endif()
-        set(CMAKE_INSTALL_${folder} "${relative}")
+    endif()
+    # For pkg-config.
+    set(pc_${folder} "\${prefix}/${CMAKE_INSTALL_${folder}}")
+    if(IS_ABSOLUTE "${CMAKE_INSTALL_${folder}}")
+        string(REPLACE " " "\\ " pc_${folder} "${CMAKE_INSTALL_${folder}}")
     endif()
 endforeach()
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/noisefloor")
@@ -31,7 +34,7 @@ set(tilesdir "")
 if(EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/../core/tiles")
     set(tiles "${CMAKE_INSTALL_DATADIR}/noisefloor/tiles")
     install(DIRECTORY ../core/tiles/ DESTINATION "${tiles}" FILES_MATCHING PATTERN "*.nft")
-    set(tilesdir "tilesdir=\${prefix}/${tiles}")
+    set(tilesdir "tilesdir=${pc_DATADIR}/noisefloor/tiles")
 endif()
 
 # One file of targets for each kind, so that a distribution can leave one out of a package.
@@ -60,8 +63,8 @@ file(RELATIVE_PATH prefix_from_pc "/prefix/${pkgconfig_dir}" "/prefix")
 string(REGEX REPLACE "/$" "" prefix_from_pc "${prefix_from_pc}")
 set(pc_prefix "\${pcfiledir}/${prefix_from_pc}")
 # pkg-config leaves out the system's own folders only by their names.
-if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
-    set(pc_prefix /usr)
+if(CMAKE_INSTALL_PREFIX STREQUAL "/usr" OR IS_ABSOLUTE "${pkgconfig_dir}")
+    set(pc_prefix "${CMAKE_INSTALL_PREFIX}")
 endif()
 list(TRANSFORM mathematics PREPEND "-l" OUTPUT_VARIABLE libs_private)
 configure_file(cmake/noisefloor.pc.in noisefloor.pc @ONLY)

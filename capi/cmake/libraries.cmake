@@ -5,11 +5,16 @@ file(GLOB_RECURSE sources CONFIGURE_DEPENDS src/*.rs ../core/src/*.rs ../core/ti
     ../core/tiles/*.bin)
 # What else decides what cargo makes; outside the workspace some of it is not there.
 set(settings)
-foreach(file Cargo.toml ../Cargo.toml ../Cargo.lock ../core/Cargo.toml)
+foreach(file Cargo.toml Cargo.lock ../Cargo.toml ../Cargo.lock ../core/Cargo.toml)
     if(EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
         list(APPEND settings "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
     endif()
 endforeach()
+# Some distributions remove the versions, for cargo to take their own.
+set(locked "")
+if(settings MATCHES "Cargo\\.lock")
+    set(locked --locked)
+endif()
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${settings} "${headers}/noisefloor/base.h")
 set(archive "${NOISEFLOOR_CARGO_TARGET_DIR}/${cargo_target}/release/libnoisefloor.a")
 set(object "${CMAKE_CURRENT_BINARY_DIR}/noisefloor.o")
@@ -19,7 +24,7 @@ set(profile CARGO_PROFILE_RELEASE_PANIC=abort CARGO_PROFILE_RELEASE_LTO=fat CARG
 add_custom_command(
     OUTPUT "${object}"
     COMMAND "${CMAKE_COMMAND}" -E env --unset=MAKEFLAGS ${profile}
-        ${NOISEFLOOR_CARGO_ENVIRONMENT} "${NOISEFLOOR_CARGO}" ${cargo_build} --quiet --release --locked --lib
+        ${NOISEFLOOR_CARGO_ENVIRONMENT} "${NOISEFLOOR_CARGO}" ${cargo_build} --quiet --release ${locked} --lib
         --manifest-path "${CMAKE_CURRENT_SOURCE_DIR}/Cargo.toml" --target-dir "${NOISEFLOOR_CARGO_TARGET_DIR}"
     COMMAND "${CMAKE_COMMAND}" "-DAR=${CMAKE_AR}" "-DARCHIVE=${archive}" "-DOBJECT=${object}"
         -P "${CMAKE_CURRENT_SOURCE_DIR}/cmake/object.cmake"

@@ -51,8 +51,8 @@ pub extern "C" fn nf_sampler_domain(sampler: nf_sampler, key: u32) -> nf_sampler
 }
 
 /// An independent version of the sampler, and of its children, for each seed but 0, which changes nothing. All values
-/// of a dimension are exclusive-or a hash of seed and domain: uniform over random seeds, so that estimates are unbiased.
-/// Nets stay nets; neighbours' errors vanish less through a filter. For good images take another frame instead.
+/// of a dimension are exclusive-or a hash of seed and domain: uniform over random seeds, for unbiased estimates. Nets
+/// stay nets; neighbours' errors vanish less through a filter. For good images take another frame instead.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_sampler_scramble(sampler: nf_sampler, seed: u32) -> nf_sampler {
     of(to(&sampler).scramble(seed))

@@ -42,8 +42,8 @@ nf_sampler nf_sampler_white(uint32_t x, uint32_t y, uint32_t frame, uint32_t ind
 nf_sampler nf_sampler_domain(nf_sampler sampler, uint32_t key);
 
 // An independent version of the sampler, and of its children, for each seed but 0, which changes nothing. All values
-// of a dimension are exclusive-or a hash of seed and domain: uniform over random seeds, so that estimates are unbiased.
-// Nets stay nets; neighbours' errors vanish less through a filter. For good images take another frame instead.
+// of a dimension are exclusive-or a hash of seed and domain: uniform over random seeds, for unbiased estimates. Nets
+// stay nets; neighbours' errors vanish less through a filter. For good images take another frame instead.
 nf_sampler nf_sampler_scramble(nf_sampler sampler, uint32_t seed);
 
 // Writes `dims` numbers, 1..4, to u[dims]: each in [0, 1), a multiple of 2^-24; nothing if dims is out of range or u

@@ -439,10 +439,17 @@ static void words()
              nf::check(steps)));
     const std::uint32_t counts[2] = {0, 1};
     CHECK(std::strstr(WORDS(nf::optimal_mis::create(counts, 1, workspace)), "counts") != nullptr);
+    const std::uint32_t once[2] = {1, 1};
+    CHECK(std::strstr(WORDS(nf::optimal_mis::create(once, 0, workspace)), "integrals") != nullptr);
+    std::array<std::uint64_t, 64> sums{};
+    nf::optimal_mis omis = nf::optimal_mis::create(once, 1, sums);
+    CHECK(std::strstr(WORDS(omis.next_batch(nf::optimal_mis::solver::plain, 0.0f, 2.0f)), "beta") != nullptr);
+    std::array<float, 1> one{};
+    CHECK(std::strstr(WORDS(omis.solve(one, nf::optimal_mis::solver::ridge, -1.0f)), "ridge") != nullptr);
     // A coordinate is no field.
     std::array<float, 4> outside{0.5f, 1.0001f, 0.5f, 0.5f};
     CHECK(is(WORDS(nf::estimate(config, {outside, {f, 2}}, workspace)), nf::message(nf::status::range)));
-    CHECK(std::strstr(nf::message(nf::status::range), "coordinate outside [0, 1]") != nullptr);
+    CHECK(std::strstr(nf::message(nf::status::range), "function's description") != nullptr);
 }
 #endif
 

@@ -107,6 +107,12 @@ for name in libnoisefloor.a libnoisefloor.so cmake/noisefloor/noisefloorConfig.c
     [ -f "$lib/$name" ] || fail "$lib/$name was not installed"
 done
 echo "a staged install"
+# As some distributions divide packages: headers are outside the prefix.
+apart="$work/headers apart"
+configure "$own" "$work/apart" "$work/apart/lib" "-DCMAKE_INSTALL_INCLUDEDIR=$apart"
+quiet cmake --install "$own"
+[ -f "$apart/noisefloor.h" ] || fail "$apart/noisefloor.h was not installed"
+pkg_config "$work/apart/lib" "${CC:-cc}" app.c "$work/pkg_config_apart_shared" '' ''
 
 # Where only one of the libraries is there, projects find nothing of the other, and under the common name that one.
 for kind in static shared; do
