@@ -40,7 +40,7 @@ impl Error {
             Error::NotFinite => c"an input value is NaN or infinite",
             Error::Memory => c"caller-supplied memory is too small: the function's description says how much it needs",
             Error::NoSamples => c"no samples, or nothing that can be drawn",
-            Error::Unsupported => c"this combination of options is not supported: the function's description says which is",
+            Error::Unsupported => c"this combination of options is not supported: the description says which is",
             Error::Mismatch => c"the two objects were made with different configurations",
             Error::Foreign => c"the bytes are not a noisefloor tile or table",
             Error::Version => c"the format is newer than this library",
