@@ -1,6 +1,7 @@
 //! The optimiser: stochastic descent on the sliced multi-class barycenter (section 5.4).
 
 mod check;
+mod contested;
 mod cut;
 mod direction;
 mod group;

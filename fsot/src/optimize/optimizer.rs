@@ -1,6 +1,7 @@
 //! The optimisation of a point set, step by step.
 
 use super::check;
+use super::contested::contested;
 use super::direction::direction;
 use super::group::{self, Group};
 use super::problem::{Domain, Problem};
@@ -28,6 +29,8 @@ pub struct Optimizer {
     pub(super) filters: Vec<Filter>,
     /// Of the classes, without the empty ones; empty if no class has points.
     pub(super) weights: Vec<f64>,
+    /// Of the classes: whether another one gives the same points another target.
+    contested: Vec<bool>,
     /// How windows share the points; empty without windows.
     pub(super) groups: Vec<Group>,
     schedule: Schedule,
@@ -78,6 +81,7 @@ impl Optimizer {
             .collect();
         let weights = problem.classes.iter().zip(&filters).map(|(class, filter)| (class.weight, filter.members() == 0));
         let weights = normalised(weights).unwrap_or_default();
+        let contested = contested(&problem.classes, &filters, &weights);
         let schedule = Schedule::new(&problem, objectives(filters.iter().map(|filter| filter.values(MOST_OBJECTIVES))));
         let windows = if schedule.has_windows() { window_count(points, problem.dims) } else { 0 };
         let groups = if windows == 0 { Vec::new() } else { group::groups(&filters, points, windows) };
@@ -88,6 +92,7 @@ impl Optimizer {
             problem,
             filters,
             weights,
+            contested,
             groups,
             schedule,
             iteration: 0,
@@ -121,6 +126,9 @@ impl Optimizer {
             let target = &self.problem.classes[class].target;
             let write = |means: &mut [f32], density: &mut [f32], scratch: &mut Vec<f32>| {
                 target.bins(&slice.direction, means, density, scratch);
+                if self.contested[class] {
+                    density.fill(1.0);
+                }
             };
             let bins = Bins { write, uniform: target.is_uniform() };
             let energy = transport(&slice, &[1.0; D], &self.coordinates, bins, offsets, &mut workspace);

@@ -23,6 +23,8 @@ pub trait Target: Debug + Send + Sync {
     /// (5.24) as printed is relative to the length of the projection at hand. That weighs the diagonals of a square
     /// more than its sides, and long runs then end in a square grid. With a fixed length the mean force is the gradient
     /// of an isotropic energy.
+    ///
+    /// Classes that give the same points different targets go without densities, as if all were 1.
     fn bins(&self, direction: &[f32], means: &mut [f32], density: &mut [f32], scratch: &mut Vec<f32>);
 
     /// Draws a point.
