@@ -35,7 +35,7 @@ impl Error {
         match self {
             Error::Range => {
                 c"an argument is outside its documented range, which the function's description says; \
-                  in C nf_check() names a configuration's field"
+                  nf_check(), in Rust `check`, names a configuration's field"
             }
             Error::NotFinite => c"an input value is NaN or infinite",
             Error::Memory => c"caller-supplied memory is too small: the function's description says how much it needs",

@@ -5,6 +5,16 @@
     not(all(feature = "control-variate", feature = "minibatch", feature = "sampler", feature = "tile")),
     allow(dead_code, unused_imports, reason = "each feature uses some of what they share")
 )]
+#![cfg_attr(
+    not(all(
+        feature = "control-variate",
+        feature = "minibatch",
+        feature = "sampler",
+        feature = "tile",
+        feature = "warp"
+    )),
+    allow(rustdoc::broken_intra_doc_links, reason = "they lead to what other features have")
+)]
 //! noisefloor: less Monte Carlo noise for the samples a renderer or trainer already pays for.
 //!
 //! - [`control_variate`]: a pixel's own samples, fitted by functions with known integrals, give an estimate whose error
@@ -21,6 +31,17 @@
 //! Nothing allocates, and nothing panics on any input: errors are values. (At `opt-level` "z" compilers may keep checks
 //! that never fail.) The same input gives the same bits on every target. Chapters and equations are those of
 //! C. Salaün, "Toward Improving Monte Carlo Estimator for Rendering and Machine Learning", 2025.
+//!
+//! # Features
+//!
+//! All but the last are default; take what you need with `default-features = false`.
+//!
+//! - `control-variate`: [`control_variate`], [`basis`] and [`recommend`](mod@recommend).
+//! - `mis`; `minibatch`, which implies it; `tile`: the modules of these names.
+//! - `sampler`: [`sampler`], with its table of 256 KiB.
+//! - `warp`: [`warp`], by `glam`.
+//! - `tile-128-1spp-2d` and its like: one tile each, the four default ones 512 KiB at most together.
+//! - `all-tiles`: every tile.
 //!
 //! ```
 //! # #[cfg(feature = "control-variate")] {

@@ -4,6 +4,9 @@
 //! Generation", 2014: a 64-bit linear congruential generator whose output is the XSH-RR permutation of its state. Not
 //! for cryptography.
 
+/// The version whose traits [`Rng`] implements.
+pub use rand_core;
+
 use core::convert::Infallible;
 use core::num::NonZeroU32;
 use rand_core::{SeedableRng, TryRng, utils};

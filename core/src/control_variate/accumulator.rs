@@ -56,6 +56,8 @@ pub struct Accumulator<R> {
 }
 
 impl<R: Real> Accumulator<R> {
+    /// An accumulator without samples. Its memory must be [`reset`](Self::reset) before anything is added.
+    ///
     /// # Errors
     /// [`Error::Unsupported`] for what needs all samples at once, which are
     /// [`Estimator::LeaveOneOut`](super::Estimator::LeaveOneOut), [`Solver::Dual`](super::Solver::Dual), and

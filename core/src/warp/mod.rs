@@ -26,6 +26,9 @@ mod disc;
 mod frame;
 mod triangle;
 
+/// The version whose vectors these functions take.
+pub use glam;
+
 pub use cap::{uniform_cap, uniform_cap_inverse, uniform_cap_pdf};
 pub use cap::{uniform_hemisphere, uniform_hemisphere_inverse, uniform_hemisphere_pdf};
 pub use cap::{uniform_sphere, uniform_sphere_inverse, uniform_sphere_pdf};
