@@ -13,16 +13,16 @@
  * GPUs read faster what is stored elsewhere for each pixel of a row: entry i at spread(i) = i ^ (i >> 6 & 63u). So
  * store it there, and define NOISEFLOOR_TABLE(i) as table[spread(i)].
  *
- * With NFS_BUFFER defined as the type of an entry, `const unsigned` in CUDA or `__constant const uint` in OpenCL C say,
- * the table is the last argument of a draw: nfs_draw2(s, table). NOISEFLOOR_TABLE may then use `table`, and without a
- * definition is table[i]. In OpenCL C and Metal, which have no global buffers, it always is: `__global` or `device`.
+ * With NFS_BUFFER defined as the type of an entry, `const unsigned` in CUDA say, the table is the last argument of a
+ * draw: nfs_draw2(s, table). NOISEFLOOR_TABLE may then use `table`, and without a definition is table[i]. In OpenCL C
+ * and Metal, which have no global buffers, it always is: `__global` or `device`. GLSL and HLSL have no pointers.
  *
  * For HLSL by another compiler than DXC, glslang say, define NFS_HLSL. For a table of another size, of 2^NFS_SIDE x
  * 2^NFS_SIDE pixels with 2^NFS_BITS entries each (`fsot sampler --size 64` has a side of 6), define these.
  *
- * Functions and arguments are those of noisefloor.h, and nfs has the bytes of nf_sampler. Drawing twice gives the same
- * numbers; each decision needs a domain. At indices 0 and 1 the numbers of all domains repeat every 32 pixels: seeds of
- * further numbers need the pixel, too. GLSL needs version 400 or ES 310, there with a table of highp uint.
+ * Functions and arguments are those of noisefloor.h. Drawing twice gives the same numbers; each decision needs a
+ * domain. At indices 0 and 1 the numbers of all domains repeat every 32 pixels: seeds of further numbers need the
+ * pixel, too. State is 16 bytes. GLSL needs version 400 or ES 310, there with a table of highp uint.
  */
 #ifndef NOISEFLOOR_SAMPLER_H
 #define NOISEFLOOR_SAMPLER_H
@@ -222,12 +222,12 @@ NFS_FUNCTION nfs_point nfs_pair(nfs_uint x, nfs_uint y, nfs_uint first NFS_TABLE
     second ^= (second & 0x0f0f0f0fu) << 4;
     second ^= (second & 0x33333333u) << 2;
     second ^= (second & 0x55555555u) << 1;
-    p.x = nfs_entry(NFS_INSERT(first >> (32 - NFS_BITS), pixel, NFS_BITS, 2 * NFS_SIDE) NFS_GIVEN);
-    p.y = nfs_entry(NFS_INSERT(second >> (32 - NFS_BITS), pixel, NFS_BITS, 2 * NFS_SIDE) NFS_GIVEN);
+    p.x = nfs_entry(NFS_INSERT(first >> (32 - (NFS_BITS)), pixel, NFS_BITS, 2 * (NFS_SIDE)) NFS_GIVEN);
+    p.y = nfs_entry(NFS_INSERT(second >> (32 - (NFS_BITS)), pixel, NFS_BITS, 2 * (NFS_SIDE)) NFS_GIVEN);
     p.x = first ^ (p.x << 16);
     p.y = second ^ (p.y & 0xffff0000u);
-    p.x ^= (NFS_INSERT(p.x >> 24, pixel, 8, 2 * NFS_SIDE) * 0x9e3779b9u) >> 8;
-    p.y ^= (NFS_INSERT(p.y >> 24, pixel, 8, 2 * NFS_SIDE) * 0xc13fa9a9u) >> 8;
+    p.x ^= (NFS_INSERT(p.x >> 24, pixel, 8, 2 * (NFS_SIDE)) * 0x9e3779b9u) >> 8;
+    p.y ^= (NFS_INSERT(p.y >> 24, pixel, 8, 2 * (NFS_SIDE)) * 0xc13fa9a9u) >> 8;
     return p;
 }
 

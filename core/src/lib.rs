@@ -34,13 +34,14 @@
 //!
 //! # Features
 //!
-//! All but the last are default; take what you need with `default-features = false`.
+//! All modules and four tiles are default; take what you need with `default-features = false`.
 //!
 //! - `control-variate`: [`control_variate`], [`basis`] and [`recommend`](mod@recommend).
 //! - `mis`; `minibatch`, which implies it; `tile`: the modules of these names.
 //! - `sampler`: [`sampler`], with its table of 256 KiB.
 //! - `warp`: [`warp`], by `glam`.
-//! - `tile-128-1spp-2d` and its like: one tile each, the four default ones 512 KiB at most together.
+//! - `tile-128-1spp-2d` and its like: one tile each. Default are it, `tile-128-4spp-2d`, `tile-128-1spp-4d` and
+//!   `tile-64-1spp-2d`, at most 512 KiB together.
 //! - `all-tiles`: every tile.
 //!
 //! ```

@@ -29,7 +29,7 @@ struct SamplerSetup {
     uint32_t samples; // per pixel
     uint32_t frame;
     uint64_t seed;
-    bool scramble = false; // tiles: values shifted by the seed, which makes them exactly unbiased and costs quality
+    bool scramble = false; // tile and default: values scrambled by the seed, exactly unbiased, and not as good
 };
 
 // Neighbouring domains that are sampled as one: they have at most `limit` dimensions together, or are a single domain.

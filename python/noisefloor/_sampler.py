@@ -19,7 +19,7 @@ class Sampler:
     Args:
         frame: 0 to 2**32 - 1; frames are unrelated. For frames that are averaged leave it, and let `first` count on.
         seed: 0 to 2**32 - 1; each but 0 scrambles all numbers, so that estimates are unbiased over seeds. A pixel's
-            error stays as small; through a filter more of it is left.
+            squared error is up to some three times as large; through a filter more of it is left.
         white: whether neighbouring pixels know nothing of each other, for denoisers that expect that.
     """
 

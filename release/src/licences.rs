@@ -25,8 +25,9 @@ const INTRODUCTION: &str = "\
 # Packages of others
 
 Written by `cargo xtask licences`; do not edit. Licences are as their authors declare them, for all targets. At the end
-are the notices that the library must keep; others come with each package's source. A test compares this file with each
-Cargo.lock, and every licence with those that release/src/licences.rs allows.
+are the notices of packages in the library that ask for one; others come with each package's source, compiler-builtins'
+with Rust's. A test compares this file with each Cargo.lock, and every licence with those that release/src/licences.rs
+allows.
 ";
 const STANDARD_LIBRARY: &str = "
 The C library and the page also hold what they use of Rust's `core` (MIT OR Apache-2.0) and compiler-builtins (MIT AND

@@ -107,12 +107,21 @@ for name in libnoisefloor.a libnoisefloor.so cmake/noisefloor/noisefloorConfig.c
     [ -f "$lib/$name" ] || fail "$lib/$name was not installed"
 done
 echo "a staged install"
-# As some distributions divide packages: headers are outside the prefix.
+# As some distributions divide packages: folders are outside the prefix, or the prefix itself.
 apart="$work/headers apart"
-configure "$own" "$work/apart" "$work/apart/lib" "-DCMAKE_INSTALL_INCLUDEDIR=$apart"
+configure "$own" "$work/a prefix" "$work/apart" "-DCMAKE_INSTALL_INCLUDEDIR=$apart"
 quiet cmake --install "$own"
 [ -f "$apart/noisefloor.h" ] || fail "$apart/noisefloor.h was not installed"
-pkg_config "$work/apart/lib" "${CC:-cc}" app.c "$work/pkg_config_apart_shared" '' ''
+pkg_config "$work/apart" "${CC:-cc}" app.c "$work/pkg_config_apart_shared" '' ''
+configure "$own" "$work/flat" "$work/flat" "-DCMAKE_INSTALL_INCLUDEDIR=$work/flat"
+quiet cmake --install "$own"
+pkg_config "$work/flat" "${CC:-cc}" app.c "$work/pkg_config_flat_shared" '' ''
+
+# Some distributions remove Cargo.lock, for cargo to take their own packages.
+mkdir "$work/unlocked"
+tar -C "$root" --exclude=target --exclude=.git --exclude=./Cargo.lock -cf - . | tar -C "$work/unlocked" -xf -
+quiet cmake -S "$work/unlocked/capi" -B "$work/unlocked build" "-DNOISEFLOOR_CARGO=$cargo"
+! grep -rq -e --locked "$work/unlocked build" --include=*.make || fail "cargo is told --locked without a Cargo.lock"
 
 # Where only one of the libraries is there, projects find nothing of the other, and under the common name that one.
 for kind in static shared; do

@@ -152,12 +152,12 @@ mod tests {
         energies[1200..].iter().sum::<f64>() / 300.0
     }
 
-    /// With the correction, the objective ends at 2.3 times that without.
+    /// To the bit; with the correction, the objective ends at 2.3 times that without.
     #[test]
     fn no_target_outweighs_another() {
         for seed in 0..3 {
             let [own, plain] = [true, false].map(|corrects| objective(seed, corrects));
-            assert!(own < 1.02 * plain, "{own} and {plain}");
+            assert_eq!(own, plain);
         }
     }
 }
