@@ -17,6 +17,13 @@ pub(crate) const GOLDEN: u32 = 0x9e37_79b9;
 pub(crate) const FRAMES: u32 = 0x6672_616d;
 pub(crate) const SCRAMBLE: u32 = 0x7363_7261;
 
+/// What scrambles a domain's numbers of a dimension, counted from 1. A bijection of the domain: over all of them each
+/// value occurs once.
+#[inline]
+pub(crate) const fn scrambling(domain: u32, dim: u32) -> u32 {
+    mix(domain.wrapping_add(dim.wrapping_mul(GOLDEN)))
+}
+
 /// The domain that `key` leads to from `domain`; never the root, 0. For either argument fixed, a bijection of the other
 /// but for that exception. Keys are multiplied: those of one parent would lead where those of another do, as both count
 /// from 0.

@@ -2,7 +2,6 @@
 
 use crate::packages::PUBLISHED;
 use anyhow::{Context, Result, bail};
-use serde_json::Value;
 use spdx::{Expression, ParseMode};
 use std::collections::BTreeMap;
 use std::fs;
@@ -73,14 +72,12 @@ fn current() -> Result<String> {
 /// The licence files of the packages whose notice must be kept.
 fn notices(packages: &Packages) -> Result<String> {
     let mut text = String::new();
-    let metadata = run::read(run::cargo().args(["metadata", "--quiet", "--locked", "--format-version", "1"]))?;
-    let metadata: Value = serde_json::from_str(&metadata).context("cargo metadata wrote no JSON")?;
+    let metadata = run::metadata(&["--quiet", "--locked"])?;
     for ((name, version), licence) in packages {
         if allows(licence, &WITHOUT_NOTICE)? {
             continue;
         }
-        let is_it = |one: &&Value| one["name"] == **name && one["version"] == **version;
-        let found = metadata["packages"].as_array().and_then(|all| all.iter().find(is_it));
+        let found = metadata.iter().find(|one| one["name"] == **name && one["version"] == **version);
         let manifest = found.and_then(|one| one["manifest_path"].as_str());
         let manifest = manifest.with_context(|| format!("cargo metadata has no {name} {version}"))?;
         let file = Path::new(manifest).with_file_name("LICENSE.txt");

@@ -83,7 +83,12 @@ pub fn read(command: &mut Command) -> Result<String> {
 
 /// What cargo says of the workspace's packages.
 pub fn packages() -> Result<Vec<serde_json::Value>> {
-    let metadata = read(cargo().args(["metadata", "--no-deps", "--format-version", "1"]))?;
+    metadata(&["--no-deps"])
+}
+
+/// What cargo says of the packages that the workspace needs, with these options.
+pub fn metadata(options: &[&str]) -> Result<Vec<serde_json::Value>> {
+    let metadata = read(cargo().args(["metadata", "--format-version", "1"]).args(options))?;
     let metadata: serde_json::Value = serde_json::from_str(&metadata).context("cargo metadata wrote no JSON")?;
     Ok(metadata["packages"].as_array().context("cargo metadata names no packages")?.clone())
 }

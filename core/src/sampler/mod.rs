@@ -28,7 +28,7 @@ pub mod table;
 
 pub use crate::pixels::{PixelSampler, fill, fill_len};
 
-use crate::hash::{FRAMES, GOLDEN, SCRAMBLE, child, mix};
+use crate::hash::{FRAMES, SCRAMBLE, child, scrambling};
 use crate::matrix::first_mut;
 use crate::rng::unit;
 
@@ -120,8 +120,8 @@ impl Sampler {
         const { assert!(0 < N && N <= 4, "a domain has 1 to 4 numbers") };
         let mut fixed = net::point::<N>(self);
         if self.flags & SCRAMBLED != 0 {
-            for (number, value) in (1..).zip(&mut fixed) {
-                *value ^= mix(self.domain.wrapping_add(GOLDEN.wrapping_mul(number)));
+            for (dim, value) in (1..).zip(&mut fixed) {
+                *value ^= scrambling(self.domain, dim);
             }
         }
         fixed.map(unit)

@@ -5,7 +5,7 @@ use super::sequence;
 use super::shape::Shape;
 use super::site::Site;
 use super::view::Tile;
-use crate::hash::{GOLDEN, child, mix};
+use crate::hash::{child, scrambling};
 use crate::matrix::chunk;
 
 /// Keeps domains of further dimensions apart from those of keys.
@@ -156,16 +156,9 @@ impl Net {
 #[inline(always)]
 fn displaced(of: &Sampler<'_>, fixed: &mut [u32]) {
     if of.scrambled != 0 {
-        fixed.iter_mut().zip(1..).for_each(|(u, dim)| *u = u.wrapping_add(rotation(of.domain, dim)));
+        fixed.iter_mut().zip(1..).for_each(|(u, dim)| *u = u.wrapping_add(scrambling(of.domain, dim)));
     }
     if of.index >= of.tile.shape().spp {
         sequence::shift(of.domain, of.index, fixed);
     }
-}
-
-/// How far a scrambled domain's values are shifted; a bijection of the domain, so over all of them each shift occurs
-/// once.
-#[inline]
-const fn rotation(domain: u32, dim: u32) -> u32 {
-    mix(domain.wrapping_add(dim.wrapping_mul(GOLDEN)))
 }
