@@ -1,6 +1,6 @@
 /* noisefloor: less Monte Carlo noise for the samples you already pay for.
  *
- * Generated from capi/ by `cargo xtask header`; do not edit. MIT OR Apache-2.0.
+ * For C99 and newer. Generated from capi/ by `cargo xtask header`; do not edit. MIT OR Apache-2.0.
  *
  * Conventions, written once:
  *  - Arguments: configuration or object first (for an init function, the memory of the object to be), then inputs, then

@@ -10,6 +10,10 @@
 #ifndef NOISEFLOOR_HPP
 #define NOISEFLOOR_HPP
 
+#if __cplusplus < 201703L && (!defined(_MSVC_LANG) || _MSVC_LANG < 201703L)
+#error "noisefloor.hpp needs C++17 or newer: -std=c++17, /std:c++17, target_compile_features(app PRIVATE cxx_std_17)"
+#endif
+
 #include "noisefloor.h"
 
 #include <array>

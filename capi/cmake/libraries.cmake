@@ -29,6 +29,8 @@ add_custom_command(
     COMMAND "${CMAKE_COMMAND}" "-DAR=${CMAKE_AR}" "-DARCHIVE=${archive}" "-DOBJECT=${object}"
         -P "${CMAKE_CURRENT_SOURCE_DIR}/cmake/object.cmake"
     DEPENDS ${sources} cmake/object.cmake ${settings}
+    # Where cargo looks for its configuration: that of vendored packages is the source's.
+    WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"
     COMMENT "Compiling noisefloor with cargo"
     VERBATIM)
 # Both libraries are made of it: without a target of its own, a parallel make would make it twice.

@@ -69,7 +69,8 @@ endif()
 # Named even where it is this machine: cargo's configuration may name another.
 set(cargo_target "${NOISEFLOOR_RUST_TARGET}")
 if(NOT cargo_target)
-    execute_process(COMMAND "${NOISEFLOOR_CARGO}" --version --verbose OUTPUT_VARIABLE version)
+    execute_process(COMMAND "${NOISEFLOOR_CARGO}" --version --verbose OUTPUT_VARIABLE version
+        WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
     string(REGEX REPLACE ".*\nhost: ([^\n]+).*" "\\1" cargo_target "${version}")
 endif()
 # Without the shared library, which cargo would link with this machine's linker.

@@ -122,6 +122,10 @@ mkdir "$work/unlocked"
 tar -C "$root" --exclude=target --exclude=.git --exclude=./Cargo.lock -cf - . | tar -C "$work/unlocked" -xf -
 quiet cmake -S "$work/unlocked/capi" -B "$work/unlocked build" "-DNOISEFLOOR_CARGO=$cargo"
 ! grep -rq -e --locked "$work/unlocked build" --include=*.make || fail "cargo is told --locked without a Cargo.lock"
+# cargo's configuration is the source's, which names vendored packages: a broken one is read, and refused.
+echo '[' >> "$work/unlocked/.cargo/config.toml"
+! cmake --build "$work/unlocked build" > "$work/log" 2>&1 || fail "the source's .cargo/config.toml is not read"
+grep -q unlocked/.cargo/config.toml "$work/log" || { cat "$work/log"; fail "cargo's configuration is not refused"; }
 
 # Where only one of the libraries is there, projects find nothing of the other, and under the common name that one.
 for kind in static shared; do
