@@ -2,6 +2,7 @@
 
 use crate::status::*;
 use core::ffi::CStr;
+use noisefloor_core::Invalid;
 
 /// Why an argument is refused: the status of a function that is given it, and words.
 #[derive(Clone, Copy)]
@@ -10,6 +11,12 @@ pub(crate) struct Wrong(pub(crate) nf_status, pub(crate) &'static CStr);
 impl From<Wrong> for nf_status {
     fn from(Wrong(status, _): Wrong) -> nf_status {
         status
+    }
+}
+
+impl From<Invalid> for Wrong {
+    fn from(Invalid { error, rule, .. }: Invalid) -> Wrong {
+        Wrong(error.into(), rule)
     }
 }
 

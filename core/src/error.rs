@@ -1,4 +1,4 @@
-//! The one error type of the crate.
+//! Why a call was refused, and which rule a configuration breaks.
 
 use core::ffi::CStr;
 use core::fmt;
@@ -76,3 +76,35 @@ impl fmt::Display for Error {
 }
 
 impl core::error::Error for Error {}
+
+/// The rule that a configuration, an image or a tile's shape breaks: what their `check` answers. It is displayed in
+/// words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub struct Invalid {
+    /// What functions answer that are given it.
+    pub error: Error,
+    /// The rule, which names the field, with the NUL that C needs.
+    pub rule: &'static CStr,
+}
+
+impl Invalid {
+    /// A field out of its range.
+    pub(crate) const fn range(rule: &'static CStr) -> Self {
+        Self { error: Error::Range, rule }
+    }
+}
+
+impl From<Invalid> for Error {
+    fn from(invalid: Invalid) -> Error {
+        invalid.error
+    }
+}
+
+impl fmt::Display for Invalid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.rule.to_str().unwrap_or_default())
+    }
+}
+
+impl core::error::Error for Invalid {}

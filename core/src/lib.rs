@@ -28,9 +28,13 @@
 //!   6).
 //! - [`rng`]: a small generator with the same stream on every target.
 //!
-//! Nothing allocates, and nothing panics on any input: errors are values. (At `opt-level` "z" compilers may keep checks
-//! that never fail.) The same input gives the same bits on every target. Chapters and equations are those of
+//! Nothing allocates, and nothing panics on any input: errors are values. The same input gives the same bits on every
+//! target with the arithmetic of IEEE 754 (32-bit x86 needs SSE2 for it). Chapters and equations are those of
 //! C. Salaün, "Toward Improving Monte Carlo Estimator for Rendering and Machine Learning", 2025.
+//!
+//! A program without `std` brings a `#[panic_handler]`, which nothing here calls. Its code may stay in the program:
+//! compilers remove the last checks that never fail only with `lto = "fat"` and `codegen-units = 1`, at `opt-level` 3
+//! or "s".
 //!
 //! # Features
 //!
@@ -95,4 +99,8 @@ pub mod tile;
 #[cfg(feature = "warp")]
 pub mod warp;
 
-pub use error::Error;
+pub use error::{Error, Invalid};
+
+#[cfg(all(doctest, feature = "sampler"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -12,7 +12,8 @@ mod sealed {
 /// `f64` where the target has it in hardware, `f32` elsewhere. Sealed: no other type implements it.
 ///
 /// Only operations that IEEE 754 defines to the last bit, or that `libm` computes in software, are used, so every
-/// target returns the same bits. The type of the workspace decides in which precision an estimate is computed.
+/// target with such operations (x87 has none) returns the same bits. The type of the workspace decides in which
+/// precision an estimate is computed.
 pub trait Real:
     sealed::Sealed
     + Copy

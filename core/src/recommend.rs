@@ -40,6 +40,7 @@ pub enum Method {
 
 /// What [`recommend`] says.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Recommendation {
     /// How to make estimates of the samples.
     pub method: Method,

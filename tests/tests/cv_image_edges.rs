@@ -256,7 +256,7 @@ fn coordinates_must_be_there() {
     for (dims, edges, slices) in [(1, 1, 0), (2, 2, 0), (2, usize::MAX, 0), (2, 1, 2), (3, 2, 4), (3, usize::MAX, 4)] {
         let config = Config { edges, slices, ..Config::new(dims, 1, 1) };
         assert_eq!(image_workspace_len(&config, &Image::new(SIDE, SIDE), 4), Err(Error::Range));
-        assert_eq!(config.check().unwrap_err().1, EDGES);
+        assert_eq!(config.check().unwrap_err().rule, EDGES);
         assert!(image(&config, &Image::new(1, 1), Samples::new(&u[..4 * dims], &u[..4])).is_err());
     }
     for (edges, slices) in [(2, 1), (1, 4)] {

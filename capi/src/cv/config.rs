@@ -136,7 +136,7 @@ pub(crate) fn check_config(config: &nf_cv_config) -> Result<(), Wrong> {
 
 /// What the core finds wrong.
 pub(super) fn check_core(config: &Config) -> Result<(), Wrong> {
-    config.check().map_err(|(error, words)| Wrong(error.into(), words))
+    Ok(config.check()?)
 }
 
 /// The core's configuration, precision apart, see [`is_narrow`]; no more is checked than the numbers that stand for a

@@ -156,7 +156,7 @@ unsafe fn array<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], nf_stat
 
 /// What is wrong with an image.
 pub(crate) fn check_image(image: &nf_cv_image) -> Result<(), Wrong> {
-    core_image(image, false)?.check_windows().map_err(|words| Wrong(NF_ERR_RANGE, words))
+    Ok(core_image(image, false)?.check_windows()?)
 }
 
 /// The core's configuration.

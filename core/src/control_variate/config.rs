@@ -1,7 +1,7 @@
 //! What an estimate is made with.
 
 use crate::basis::{Family, MAX_DIMS, MAX_ORDER, MAX_TERMS, Shape};
-use crate::error::{Error, ensure};
+use crate::error::{Error, Invalid, ensure};
 use core::ffi::CStr;
 use core::num::NonZeroUsize;
 
@@ -180,18 +180,14 @@ impl Config {
     /// Checks every field.
     ///
     /// # Errors
-    /// What [`terms`](Self::terms) answers, and the rule that is broken in words, with the NUL that C needs.
-    pub fn check(&self) -> Result<(), (Error, &'static CStr)> {
-        self.keeps_rules().map(|_| ())
+    /// The rule that is broken, with what [`terms`](Self::terms) answers.
+    pub fn check(&self) -> Result<(), Invalid> {
+        self.checked_shape().map(|_| ())
     }
 
     /// Checks every field, and returns how many functions there are.
-    pub(crate) fn checked_shape(&self) -> Result<Shape, Error> {
-        self.keeps_rules().map_err(|(error, _)| error)
-    }
-
-    fn keeps_rules(&self) -> Result<Shape, (Error, &'static CStr)> {
-        let rule = |is_kept, words: &'static CStr| ensure(is_kept, (Error::Range, words));
+    pub(crate) fn checked_shape(&self) -> Result<Shape, Invalid> {
+        let rule = |is_kept, rule: &'static CStr| ensure(is_kept, Invalid::range(rule));
         rule((1..=MAX_DIMS).contains(&self.dims), c"dims must be 1 to 16")?;
         rule(self.order <= MAX_ORDER, c"order must be 0 to 7")?;
         rule((1..=Self::MAX_CHANNELS).contains(&self.channels), c"channels must be 1 to 4")?;
@@ -210,15 +206,16 @@ impl Config {
         let is_rate = (0.0..f32::INFINITY).contains(&self.learning_rate);
         rule(is_rate, c"learning_rate must be finite and at least 0")?;
         rule((0.0..1.0).contains(&self.momentum), c"momentum must be at least 0 and below 1")?;
-        let excluded = |is_kept, words: &'static CStr| ensure(is_kept, (Error::Unsupported, words));
+        let excluded = |is_kept, rule| ensure(is_kept, Invalid { error: Error::Unsupported, rule });
         let color = c"color must not be the luminance ratio but for 3 channels";
         excluded(self.color == Color::PerChannel || self.channels == 3, color)?;
         let is_least_squares = self.estimator == Estimator::LeastSquares && self.ridge != Ridge::Auto;
         let square_root = c"solver must not be the square root but for least squares without an automatic ridge";
         excluded(self.solver != Solver::SquareRoot || is_least_squares, square_root)?;
         excluded(self.solver != Solver::Dual || self.controls == 0, c"solver must not be the dual with controls")?;
-        let terms = c"dims, order, slices and controls make more than 136 terms: lower one of them";
-        Shape::new(self.dims, self.order, self.slices, MAX_TERMS - self.controls).map_err(|error| (error, terms))
+        let rule = c"dims, order, slices and controls make more than 136 terms: lower one of them";
+        let shape = Shape::new(self.dims, self.order, self.slices, MAX_TERMS - self.controls);
+        shape.map_err(|error| Invalid { error, rule })
     }
 
     /// Numbers from one sample's coordinates to the next.
@@ -240,6 +237,7 @@ impl Config {
 
 /// An estimate of an integral over primary sample space.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Estimate {
     /// The integral, for each channel; unused channels are zero.
     pub mean: [f32; 4],

@@ -1,6 +1,6 @@
 //! How large a tile is.
 
-use core::ffi::CStr;
+use crate::error::Invalid;
 
 /// The largest side, in pixels.
 pub const MAX_SIZE: u32 = 1024;
@@ -32,20 +32,19 @@ impl Shape {
     /// Checks every field.
     ///
     /// # Errors
-    /// The rule that is broken in words, with the NUL that C needs.
-    pub const fn check(&self) -> Result<(), &'static CStr> {
-        match self {
+    /// The rule that is broken.
+    pub const fn check(&self) -> Result<(), Invalid> {
+        let rule = match self {
             Shape { size, .. } if !size.is_power_of_two() || *size > MAX_SIZE => {
-                Err(c"size must be a power of two, 1 to 1024")
+                c"size must be a power of two, 1 to 1024"
             }
-            Shape { spp, .. } if !spp.is_power_of_two() || *spp > MAX_SPP => {
-                Err(c"spp must be a power of two, 1 to 256")
-            }
-            Shape { dims: 0 | 9.., .. } => Err(c"dims must be 1 to 8"),
-            Shape { frames: 0 | 257.., .. } => Err(c"frames must be 1 to 256"),
-            Shape { bits: 8 | 16, .. } => Ok(()),
-            _ => Err(c"bits must be 8 or 16"),
-        }
+            Shape { spp, .. } if !spp.is_power_of_two() || *spp > MAX_SPP => c"spp must be a power of two, 1 to 256",
+            Shape { dims: 0 | 9.., .. } => c"dims must be 1 to 8",
+            Shape { frames: 0 | 257.., .. } => c"frames must be 1 to 256",
+            Shape { bits: 8 | 16, .. } => return Ok(()),
+            _ => c"bits must be 8 or 16",
+        };
+        Err(Invalid::range(rule))
     }
 
     /// How many coordinates a tile of this shape has; meaningless unless it passes [`check`](Shape::check).

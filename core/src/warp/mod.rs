@@ -9,7 +9,7 @@
 //! - An inverse returns a point in 0..=1 for any argument. Where a warp folds a whole edge of the square onto one point
 //!   (a pole), it returns one of the points that map there.
 //!
-//! Arithmetic is f64 inside and the same on every target; only results are rounded to f32.
+//! Arithmetic is f64 inside, the same wherever it is that of IEEE 754; only results are rounded to f32.
 //!
 //! ```
 //! use glam::Vec2;

@@ -1,13 +1,12 @@
 //! The pixels of an image, and which of them share fits.
 
 use crate::control_variate::Config;
-use crate::error::{Error, ensure};
-use core::ffi::CStr;
+use crate::error::{Error, Invalid, ensure};
 
 /// The pixels' axes: x, y and frames.
 pub(super) const MAX_AXES: usize = 3;
 /// What is said of too many pixels.
-const MOST: &CStr = c"pixels must be at most 2^30 - 1, all frames together";
+const MOST: Invalid = Invalid::range(c"pixels must be at most 2^30 - 1, all frames together");
 
 /// The pixels of an image, or of a part of one, and what is known of them. `Image::new(width, height)` knows nothing.
 ///
@@ -131,10 +130,10 @@ impl Image<'_> {
     /// Checks its size, its windows and its parts; of arrays only whether there are any.
     ///
     /// # Errors
-    /// The rule that is broken in words, with the NUL that C needs: [`Error::Range`] of all else.
-    pub fn check_windows(&self) -> Result<(), &'static CStr> {
-        self.placed()?;
-        self.pixels().map_err(|_| MOST).map(|_| ())
+    /// The rule that is broken.
+    pub fn check_windows(&self) -> Result<(), Invalid> {
+        self.windows()?;
+        self.pixels().map(|_| ())
     }
 
     /// How many pixels the arrays hold, and how many are estimated, in all frames.
@@ -172,18 +171,14 @@ impl Image<'_> {
     }
 
     /// Where its windows lie.
-    pub(super) fn windows(&self) -> Result<Windows, Error> {
-        self.placed().map_err(|_| Error::Range)
-    }
-
-    /// The same, or the rule that is broken.
-    fn placed(&self) -> Result<Windows, &'static CStr> {
+    pub(super) fn windows(&self) -> Result<Windows, Invalid> {
+        let ensure = |is_kept, rule| ensure(is_kept, Invalid::range(rule));
         ensure(self.width > 0 && self.height > 0, c"width and height must be at least 1")?;
         let is_whole = self.given.is_empty() && self.wanted.is_empty();
         ensure(is_whole || !self.unordered, c"given and wanted must be all zero where pixels are unordered")?;
         // Pixels without places are a row, and its own window.
         let image = match self.unordered {
-            true => [self.pixels().map_err(|_| MOST)?, 1, 1],
+            true => [self.pixels()?, 1, 1],
             false => [self.width, self.height, self.frames()],
         };
         let [across, down, frames] = image;
@@ -216,11 +211,11 @@ impl Image<'_> {
     }
 
     /// All pixels that are given, of all frames.
-    pub(super) fn pixels(&self) -> Result<usize, Error> {
+    pub(super) fn pixels(&self) -> Result<usize, Invalid> {
         let all = Rectangle::new(0, 0, self.width, self.height);
         let given = if self.given.is_empty() { all } else { self.given };
         let pixels = given.pixels().and_then(|pixels| pixels.checked_mul(self.frames()));
-        pixels.filter(|&pixels| pixels <= Self::MAX_PIXELS as usize).ok_or(Error::Range)
+        pixels.filter(|&pixels| pixels <= Self::MAX_PIXELS as usize).ok_or(MOST)
     }
 
     /// Checks the arrays, for so many pixels and numbers of samples.

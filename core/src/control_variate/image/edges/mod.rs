@@ -62,7 +62,7 @@ pub(super) struct Edges<'a> {
     training: [Sums<'a>; 2],
     /// The largest value of each colour and channel.
     most: [[Eight; Config::MAX_CHANNELS]; COLOURS],
-    /// What a pixel's fits say.
+    /// The light that a pixel's fits say, at points.
     interpolant: Interpolant<'a>,
 }
 
