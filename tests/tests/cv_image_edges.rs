@@ -11,7 +11,6 @@ use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::image;
 use noisefloor_tests::statistics::{Moments, maximum};
 use std::f64::consts::PI;
-use std::ffi::CStr;
 
 const Z_LIMIT: f64 = 4.75;
 const SIDE: usize = 8;
@@ -250,13 +249,14 @@ fn units_do_not_matter() {
 
 #[test]
 fn coordinates_must_be_there() {
-    const EDGES: &CStr = c"edges must be 0, or at least 1 and below dims, with slices below dims - 1";
+    const EDGES: &str = "edges must be 0, or at least 1 and below dims, with slices below dims - 1";
     let u = [0.5; 12];
     // With slices the last coordinate is no place.
     for (dims, edges, slices) in [(1, 1, 0), (2, 2, 0), (2, usize::MAX, 0), (2, 1, 2), (3, 2, 4), (3, usize::MAX, 4)] {
         let config = Config { edges, slices, ..Config::new(dims, 1, 1) };
         assert_eq!(image_workspace_len(&config, &Image::new(SIDE, SIDE), 4), Err(Error::Range));
-        assert_eq!(config.check().unwrap_err().rule, EDGES);
+        let invalid = config.check().unwrap_err();
+        assert_eq!((Error::from(invalid), invalid.to_string().as_str()), (Error::Range, EDGES));
         assert!(image(&config, &Image::new(1, 1), Samples::new(&u[..4 * dims], &u[..4])).is_err());
     }
     for (edges, slices) in [(2, 1), (1, 4)] {
