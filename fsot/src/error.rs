@@ -20,7 +20,7 @@ pub enum Error {
         /// What the system said.
         source: io::Error,
     },
-    /// The person at the keyboard stopped the run: the sentence says how to continue it.
+    /// Ctrl-C or another signal stopped the run: the sentence says how to continue it.
     #[error("{0}")]
     Stopped(String),
 }

@@ -4,7 +4,7 @@
 
 use crate::cli_support::{Place, error};
 use std::io::{BufRead, BufReader, Read};
-use std::process::Command;
+use std::process::{Child, Command};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -42,10 +42,12 @@ fn interrupted_run_equals_whole(command: &str) {
 
     let place = Place::new();
     let often = format!("{command} --threads 1 --checkpoint-every 0.02");
-    let (code, message) = interrupt(&place, &often, "out.checkpoint", "INT");
-    assert_eq!(code, Some(130), "{message}");
-    assert!(message.contains("Run the same command again") && message.contains("out.checkpoint"), "{message}");
-    assert_eq!(place.names(), ["out.checkpoint"]);
+    for name in ["INT", "TERM"] {
+        let (code, message) = interrupt(&place, &often, "out.checkpoint", name);
+        assert_eq!(code, Some(130), "{message}");
+        assert!(message.contains("Run the same command again") && message.contains("out.checkpoint"), "{message}");
+        assert_eq!(place.names(), ["out.checkpoint"]);
+    }
 
     // Killed outright: the last periodic checkpoint counts.
     let (code, message) = interrupt(&place, &often, "out.checkpoint", "KILL");
@@ -124,6 +126,27 @@ fn a_run_that_ends_leaves_the_state_of_others() {
     assert!(other.wait().unwrap().success());
     assert_eq!(points.lines().count(), 9);
     assert!(place.read("late") == saved);
+}
+
+/// As `nohup` has it.
+#[test]
+fn a_hangup_that_is_ignored_stays_so() {
+    let place = Place::new();
+    let command = "points -n 600 --iterations 1000000 --checkpoint-every 0.02 --checkpoint state --out p.txt";
+    let script = format!("trap '' HUP; exec '{}' {command} 2>log", env!("CARGO_BIN_EXE_fsot"));
+    let mut child = Command::new("sh").args(["-c", &script]).current_dir(place.path("")).spawn().unwrap();
+    let saves = |child: &mut Child| {
+        while !place.path("state").exists() {
+            assert!(child.try_wait().unwrap().is_none());
+            sleep(Duration::from_millis(2));
+        }
+    };
+    saves(&mut child);
+    signal("HUP", child.id());
+    std::fs::remove_file(place.path("state")).unwrap();
+    saves(&mut child);
+    signal("TERM", child.id());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
 }
 
 #[test]

@@ -1,47 +1,55 @@
-//! Ctrl-C: at once, unless there is something to save or to complete first.
-//!
-//! SIGTERM and SIGHUP are left as they are, so that `nohup` works; the last periodic checkpoint then counts.
+//! Ctrl-C, SIGTERM and SIGHUP: at once, unless there is something to save or to complete first.
 
 use fsot::error::{Error, Result};
-use std::sync::Once;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+use std::fs;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock, Once};
 
 /// The exit code of a stopped run.
 pub(crate) const EXIT: u8 = 130;
 
-static WATCHES: AtomicU32 = AtomicU32::new(0);
-static STOPPED: AtomicBool = AtomicBool::new(false);
-static HANDLER: Once = Once::new();
+/// Its number where there is such a signal.
+const SIGHUP: i32 = 1;
 
-/// While one exists, the first Ctrl-C only sets [`stopped`](Watch::stopped); a second one ends the program. Whoever has
-/// one looks before it is gone: the next counts anew.
+/// Whether the next signal ends the program: nobody watches, or one has come before.
+static ENDS: LazyLock<Arc<AtomicBool>> = LazyLock::new(|| Arc::new(AtomicBool::new(true)));
+static HANDLERS: Once = Once::new();
+
+/// While it exists, the first signal only sets [`stopped`](Watch::stopped); a second one ends the program. Whoever has
+/// it looks before it is gone: the next counts anew.
 pub(crate) struct Watch(());
 
 impl Watch {
     pub(crate) fn start() -> Result<Watch> {
         let mut result = Ok(());
-        HANDLER.call_once(|| {
-            result = ctrlc::set_handler(|| {
-                if WATCHES.load(Ordering::SeqCst) == 0 || STOPPED.swap(true, Ordering::SeqCst) {
-                    std::process::exit(i32::from(EXIT));
-                }
+        HANDLERS.call_once(|| {
+            result = [SIGINT, SIGTERM].into_iter().chain(hangup()).try_for_each(|signal| {
+                flag::register_conditional_shutdown(signal, i32::from(EXIT), Arc::clone(&ENDS))?;
+                flag::register(signal, Arc::clone(&ENDS)).map(drop)
             });
         });
-        result.map_err(|error| Error::Input(format!("cannot watch for Ctrl-C: {error}")))?;
-        if WATCHES.load(Ordering::SeqCst) == 0 {
-            STOPPED.store(false, Ordering::SeqCst);
-        }
-        WATCHES.fetch_add(1, Ordering::SeqCst);
+        result.map_err(|error: std::io::Error| Error::Input(format!("cannot watch for Ctrl-C: {error}")))?;
+        ENDS.store(false, Ordering::SeqCst);
         Ok(Watch(()))
     }
 
     pub(crate) fn stopped(&self) -> bool {
-        STOPPED.load(Ordering::SeqCst)
+        ENDS.load(Ordering::SeqCst)
     }
 }
 
 impl Drop for Watch {
     fn drop(&mut self) {
-        WATCHES.fetch_sub(1, Ordering::SeqCst);
+        ENDS.store(true, Ordering::SeqCst);
     }
+}
+
+/// The signal of a terminal that closes, where the system says that it is not ignored: `nohup` must work.
+fn hangup() -> Option<i32> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"))?;
+    let ignored = u64::from_str_radix(ignored.trim(), 16).ok()?;
+    (ignored & 1 == 0).then_some(SIGHUP)
 }
