@@ -22,6 +22,17 @@ pub trait Optimization {
         }
     }
 
+    /// Takes a part of a step, where steps take long; returns what [`step`](Optimization::step) does if that was its last.
+    /// Until then the state is that before the step: what is saved meanwhile continues there.
+    fn advance(&mut self) -> Option<f64> {
+        Some(self.step())
+    }
+
+    /// The part of the present step that is done.
+    fn part(&self) -> f64 {
+        0.0
+    }
+
     /// The state: coordinates, and what else a sampler remembers.
     fn coordinates(&self) -> &[f32];
 

@@ -11,6 +11,7 @@ pub(crate) const POINTS: usize = 1 << (OCTAVES - 1);
 pub(crate) type Places = [[u16; POINTS]; 2];
 
 /// What a step's energy is made of.
+#[derive(Debug)]
 pub(crate) struct Energy {
     /// The octaves that count.
     pub(crate) octaves: Vec<usize>,
@@ -46,6 +47,7 @@ impl Energy {
 }
 
 /// The net's first points, and which of them share an offset's bits.
+#[derive(Debug)]
 pub(crate) struct Groups {
     /// The points' coordinates before any offset.
     pub(crate) net: [[u32; POINTS]; 2],

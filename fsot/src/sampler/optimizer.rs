@@ -46,6 +46,20 @@ pub struct SamplerOptimizer {
     border: Border,
     /// What a checkpoint holds: offsets, then what the border remembers.
     coordinates: Vec<f32>,
+    present: Option<Step>,
+}
+
+/// A step that is being taken.
+#[derive(Debug)]
+struct Step {
+    energy: Energy,
+    groups: Groups,
+    temperature: f32,
+    fields: Fields,
+    all: Vec<Places>,
+    sweeps: usize,
+    /// What is minimised, before the step.
+    before: f64,
 }
 
 /// What there is: for each octave, relative to independent samples.
@@ -60,6 +74,7 @@ pub struct SamplerReport {
 }
 
 /// Sums over pixels of a step.
+#[derive(Debug)]
 struct Fields {
     errors: Vec<Errors>,
     around: Vec<Errors>,
@@ -99,6 +114,7 @@ impl SamplerOptimizer {
             offsets: (0..pixels).map(|_| start()).collect(),
             border: Border::new(pixels),
             coordinates: vec![0.0; (pixels << (bits + 1)) + STATE],
+            present: None,
             problem,
         };
         optimizer.store();
@@ -260,6 +276,18 @@ impl SamplerOptimizer {
         }
     }
 
+    fn begin(&mut self) -> Step {
+        let (weights, temperature) = self.problem.stage(self.iteration);
+        let energy = Energy::new(&self.basis, &weights);
+        let groups = Groups::new(&self.problem, energy.points);
+        let all = self.survey(&energy, &groups);
+        let fields = self.fields(&energy, &all);
+        let report = self.look(&energy, &fields, &all);
+        let sum: f32 = energy.octaves.iter().map(|octave| weights[*octave] * report.filtered[*octave]).sum();
+        let before = f64::from(sum / energy.octaves.iter().map(|octave| weights[*octave]).sum::<f32>());
+        Step { energy, groups, temperature, fields, all, sweeps: 0, before }
+    }
+
     fn sweep(&mut self, sweep: usize, rules: (&Energy, &Groups, f32), fields: &mut Fields, all: &mut [Places]) {
         let (energy, groups, temperature) = rules;
         let number = self.iteration * SWEEPS as u64 + sweep as u64;
@@ -385,19 +413,32 @@ impl Optimization for SamplerOptimizer {
     }
 
     fn step(&mut self) -> f64 {
-        let (weights, temperature) = self.problem.stage(self.iteration);
-        let energy = Energy::new(&self.basis, &weights);
-        let groups = Groups::new(&self.problem, energy.points);
-        let mut all = self.survey(&energy, &groups);
-        let mut fields = self.fields(&energy, &all);
-        let report = self.look(&energy, &fields, &all);
-        for sweep in 0..SWEEPS {
-            self.sweep(sweep, (&energy, &groups, temperature), &mut fields, &mut all);
+        loop {
+            if let Some(energy) = self.advance() {
+                return energy;
+            }
+        }
+    }
+
+    fn advance(&mut self) -> Option<f64> {
+        let mut step = match self.present.take() {
+            Some(step) => step,
+            None => self.begin(),
+        };
+        let Step { energy, groups, temperature, fields, all, sweeps, .. } = &mut step;
+        self.sweep(*sweeps, (energy, groups, *temperature), fields, all);
+        *sweeps += 1;
+        if *sweeps < SWEEPS {
+            self.present = Some(step);
+            return None;
         }
         self.iteration += 1;
         self.store();
-        let sum: f32 = energy.octaves.iter().map(|octave| weights[*octave] * report.filtered[*octave]).sum();
-        f64::from(sum / energy.octaves.iter().map(|octave| weights[*octave]).sum::<f32>())
+        Some(step.before)
+    }
+
+    fn part(&self) -> f64 {
+        self.present.as_ref().map_or(0.0, |step| step.sweeps as f64 / SWEEPS as f64)
     }
 
     fn coordinates(&self) -> &[f32] {
@@ -420,6 +461,7 @@ impl Optimization for SamplerOptimizer {
             }
             self.border.past.copy_from_slice(past);
             self.iteration = iteration;
+            self.present = None;
             self.coordinates.copy_from_slice(coordinates);
         }
         good

@@ -92,9 +92,9 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
         if optimization.iteration() >= optimization.iterations() {
             break;
         }
-        let energy = optimization.step();
+        let energy = optimization.advance();
         progress.step(&*optimization, energy);
-        if last.elapsed() >= every && can_save {
+        if energy.is_some() && last.elapsed() >= every && can_save {
             match checkpoint::save(&checkpoint, &problem, optimization) {
                 Ok(()) => saved = true,
                 Err(error) => {
@@ -197,33 +197,36 @@ impl Progress {
         }
     }
 
-    fn step(&mut self, optimization: &dyn Optimization, energy: f64) {
+    /// After a step, whose energy there is then, or a part of one.
+    fn step(&mut self, optimization: &dyn Optimization, energy: Option<f64>) {
         let [done, all] = [optimization.iteration(), optimization.iterations()];
-        let steps = done.saturating_sub(self.first).max(1);
-        let weight = 1.0 / (steps as f64).min(AVERAGED);
-        self.energy = Some(self.energy.map_or(energy, |average| average + weight * (energy - average)));
+        let steps = done.saturating_sub(self.first) as f64 + optimization.part();
+        if let Some(energy) = energy {
+            let weight = 1.0 / steps.min(AVERAGED);
+            self.energy = Some(self.energy.map_or(energy, |average| average + weight * (energy - average)));
+        }
         if self.quiet {
             return;
         }
         if !self.announced && (self.start.elapsed() >= MEASURED || done == all) {
             self.announce(done, all, steps);
         }
-        let energy = self.energy.unwrap_or(energy);
+        let energy = self.energy.map_or("-".to_owned(), |energy| format!("{energy:.3e}"));
         if let Some(bar) = &self.bar {
             bar.set_position(done);
-            bar.set_message(format!("{energy:.3e}"));
+            bar.set_message(energy);
         } else if self.announced && self.line.elapsed() >= LINE_EVERY {
             self.line = Instant::now();
-            let left = self.left(done, all, steps);
-            self.say(&format!("step {done} of {all}, energy {energy:.3e}, {} left", HumanDuration(left)));
+            let left = self.left(all, steps);
+            self.say(&format!("step {done} of {all}, energy {energy}, {} left", HumanDuration(left)));
         }
     }
 
     /// Says what the run costs, extrapolated from its first steps, and starts the bar if there is a terminal.
-    fn announce(&mut self, done: u64, all: u64, steps: u64) {
+    fn announce(&mut self, done: u64, all: u64, steps: f64) {
         self.announced = true;
         let threads = rayon::current_num_threads();
-        let total = self.start.elapsed().saturating_add(self.left(done, all, steps));
+        let total = self.start.elapsed().saturating_add(self.left(all, steps));
         let duration = if total.as_secs() < 2 {
             format!("{:.1} seconds", total.as_secs_f64())
         } else {
@@ -242,8 +245,9 @@ impl Progress {
         self.line = Instant::now();
     }
 
-    fn left(&self, done: u64, all: u64, steps: u64) -> Duration {
-        let seconds = self.start.elapsed().as_secs_f64() / steps as f64 * all.saturating_sub(done) as f64;
+    /// How long what is left of `all` takes, when `steps` took as long as they did.
+    fn left(&self, all: u64, steps: f64) -> Duration {
+        let seconds = self.start.elapsed().as_secs_f64() / steps * (all.saturating_sub(self.first) as f64 - steps);
         Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)
     }
 }
