@@ -94,6 +94,11 @@ fn wrong_files() {
         (format!("{}weight = -2.0", one("\"constant\"")), "weight is -2"),
         (format!("{}colour = 1", one("\"constant\"")), "colour"),
         (format!("{}target = \"circle\"", one("\"constant\"")), "circle"),
+        (one("\"constant\"").repeat(2), "c.toml: classes \"it\" and \"it\" cannot be told apart"),
+        (
+            one("\"constant\"").replace("it", "ink 1") + &one("\"constant\"").replace("it", "ink_1"),
+            "classes \"ink 1\" and \"ink_1\" cannot be told apart: give them names that differ in more than spaces",
+        ),
     ] {
         let error = ClassFile::parse(Path::new("c.toml"), &text).unwrap_err().to_string();
         assert!(error.contains(says), "{error:?} does not say {says:?}");

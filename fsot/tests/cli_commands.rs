@@ -127,7 +127,7 @@ fn a_class_file_names_its_pictures_from_where_it_is() {
     place.succeed("points -n 100 --classes classes/c.toml --out p.csv --quality draft");
     let table = read::points(&place.path("p.csv")).unwrap();
     let classes = table.classes.unwrap();
-    assert_eq!(classes.names, ["left", "any_where"]);
+    assert_eq!(classes.names, ["left", "any where"]);
     let left = table.points.iter().zip(&classes.index).filter(|(_, class)| **class == 0);
     assert!(left.clone().count() == 50 && left.clone().all(|(point, _)| point[0] < 0.55));
 }

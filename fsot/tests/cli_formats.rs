@@ -37,6 +37,25 @@ fn points_keep_their_bits() {
     }
 }
 
+/// Verbatim, but in text, where spaces separate them.
+#[test]
+fn classes_keep_their_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let names = ["ink 1", "a,\"b\"\n#c", "", "red"];
+    let written = Table { classes: Some(Labels::from_names(names.map(str::to_owned))), ..table(2, false) };
+    let written = Table { points: Points::new(2, written.points.coordinates()[..8].to_vec()), ..written };
+    for (name, expected) in [("p.csv", names), ("p.json", names), ("p.txt", ["ink_1", "a,\"b\"__c", "_", "red"])] {
+        let path = folder.path().join(name);
+        fs::write(&path, encode(&written, Format::of(&path)).unwrap()).unwrap();
+        assert_eq!(read::points(&path).unwrap().classes.unwrap().names, expected, "{name}");
+    }
+    let same = Labels::from_names(["a b", "a_b"].map(str::to_owned));
+    let same = Table { points: Points::new(1, vec![0.25, 0.5]), classes: Some(same) };
+    assert!(encode(&same, Format::Csv).is_ok());
+    let error = encode(&same, Format::Text).unwrap_err().to_string();
+    assert!(error.contains("classes \"a b\" and \"a_b\" cannot be told apart"), "{error}");
+}
+
 #[test]
 fn foreign_text_is_read() {
     let folder = tempfile::tempdir().unwrap();

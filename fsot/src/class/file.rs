@@ -4,6 +4,7 @@ use super::function::ClassFunction;
 use super::weighted::{Class, check_weight};
 use crate::Error;
 use crate::error::Result;
+use crate::export::points::words;
 use crate::read;
 use crate::target::{Target, Uniform};
 use serde::Deserialize;
@@ -73,6 +74,8 @@ impl ClassFile {
         if file.class.is_empty() {
             return Err(Error::Input(format!("{}: no class: give at least one", path.display())));
         }
+        words(file.class.iter().map(|entry| &entry.name))
+            .map_err(|error| Error::Input(format!("{}: {error}", path.display())))?;
         for entry in &file.class {
             entry.function.check(&entry.name)?;
             check_weight(entry.weight, &entry.name)?;

@@ -20,7 +20,7 @@ pub struct Table {
 /// A class for each point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Labels {
-    /// The names of the classes: not empty, without spaces.
+    /// The names of the classes.
     pub names: Vec<String>,
     /// The index of each point's class in `names`.
     pub index: Vec<usize>,
@@ -50,7 +50,7 @@ impl Labels {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// A line of numbers per point, separated by spaces: the coordinates, then the class's index if there are classes,
-    /// which are named in a last line `# classes: NAME NAME ...`.
+    /// which are named in a last line `# classes: NAME NAME ...`, by [`words`].
     Text,
     /// A header row `x,y,class`, then a row per point with its class's name.
     Csv,
@@ -88,7 +88,7 @@ pub fn column_names(dims: usize) -> impl Iterator<Item = String> {
 /// The content of a file. Coordinates have as many digits as it takes to read the same bits back.
 ///
 /// # Errors
-/// Not one class per point, or a class's name is empty or has a space or `#` in it.
+/// Not one class per point; as text, those of [`words`].
 pub fn encode(table: &Table, format: Format) -> Result<Vec<u8>> {
     if let Some(classes) = &table.classes {
         let known = classes.index.iter().all(|index| *index < classes.names.len());
@@ -99,19 +99,35 @@ pub fn encode(table: &Table, format: Format) -> Result<Vec<u8>> {
                 counted(classes.index.len(), "class")
             )));
         }
-        let unfit = |c: char| c.is_whitespace() || c.is_control() || c == '#';
-        if let Some(name) = classes.names.iter().find(|name| name.is_empty() || name.contains(unfit)) {
-            return Err(Error::Input(format!("`{name}` is no name for a class: use letters, digits, - and _")));
-        }
     }
     match format {
-        Format::Text => Ok(text(table).into_bytes()),
+        Format::Text => text(table).map(String::into_bytes),
         Format::Csv => csv(table).map_err(|error| Error::Input(error.to_string())),
         Format::Json => json(table).map_err(|error| Error::Input(error.to_string())),
     }
 }
 
-fn text(table: &Table) -> String {
+/// Names as words: spaces and `#` in them, or nothing, become `_`.
+///
+/// # Errors
+/// Two of them are then the same.
+pub fn words<'a>(names: impl IntoIterator<Item = &'a String>) -> Result<Vec<String>> {
+    let unfit = |c: char| c.is_whitespace() || c.is_control() || c == '#';
+    let mut known = HashMap::new();
+    let word = |name: &'a String| {
+        let word = if name.is_empty() { "_".to_owned() } else { name.replace(unfit, "_") };
+        match known.insert(word.clone(), name) {
+            Some(other) => Err(Error::Input(format!(
+                "classes {other:?} and {name:?} cannot be told apart: give them names that differ in more than spaces, \
+                 # and _"
+            ))),
+            None => Ok(word),
+        }
+    };
+    names.into_iter().map(word).collect()
+}
+
+fn text(table: &Table) -> Result<String> {
     let mut text = String::new();
     for (number, point) in table.points.iter().enumerate() {
         let class = table.classes.iter().filter_map(|classes| classes.index.get(number)).map(usize::to_string);
@@ -120,9 +136,9 @@ fn text(table: &Table) -> String {
         text.push('\n');
     }
     if let Some(classes) = &table.classes {
-        text.push_str(&format!("# classes: {}\n", classes.names.join(" ")));
+        text.push_str(&format!("# classes: {}\n", words(&classes.names)?.join(" ")));
     }
-    text
+    Ok(text)
 }
 
 fn csv(table: &Table) -> std::io::Result<Vec<u8>> {

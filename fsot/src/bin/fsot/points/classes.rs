@@ -87,7 +87,7 @@ impl Classes {
             let values = classes.iter().map(|class| self.value(class, point)).enumerate();
             values.max_by(order).map_or(0, |(class, _)| class)
         };
-        let labels = Labels::from_names((0..self.problem.points).map(|point| word(&classes[best(point)].name)));
+        let labels = Labels::from_names((0..self.problem.points).map(|point| classes[best(point)].name.clone()));
         (labels.names.len() > 1).then_some(labels)
     }
 
@@ -130,11 +130,4 @@ fn prefixes(values: impl Iterator<Item = f32>) -> Vec<usize> {
         falls.push(count);
     }
     falls
-}
-
-/// A class's name in a file of points.
-fn word(name: &str) -> String {
-    let name: String =
-        name.chars().map(|c| if c.is_whitespace() || c.is_control() || c == '#' { '_' } else { c }).collect();
-    if name.is_empty() { "_".to_owned() } else { name }
 }
