@@ -10,12 +10,14 @@ use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::export::points::{Json, Labels, Table};
 use crate::picture::{Photo, is_linear};
+use crate::place::Object;
 use crate::points::Points;
 use crate::target::image::ImageTarget;
 use image::error::ImageError;
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 use noisefloor::tile::MAGIC;
+use serde::Deserialize;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -25,6 +27,8 @@ const MOST_DECODED: u64 = 512 << 20;
 const LINE: usize = 100;
 /// Some editors begin a text with it.
 const BYTE_ORDER_MARK: char = '\u{feff}';
+/// The columns of `fsot place`'s tables: an object's colour is its class, and its size is no coordinate.
+const OBJECT: [&str; 4] = ["x", "y", "color", "size"];
 const NO_PICTURE: &str = "not a picture that can be read: use PNG, JPEG or OpenEXR";
 
 /// The content of a tile's file, which begins as such files do; nothing else is known of it.
@@ -116,6 +120,10 @@ fn decode(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
     let failed = |error: ImageError| {
         Error::Input(match error {
             ImageError::Limits(_) => too_large(&path.to_string(), png_size(bytes), None),
+            // As the decoder says it; the exr library tells no more.
+            error if error.to_string().contains("rgb channels") => format!(
+                "{path} is {name} without red, green and blue: channels R, G and B are read, save it with these"
+            ),
             error => format!("{path} is a damaged {name} file: {error}"),
         })
     };
@@ -197,7 +205,8 @@ pub fn density(path: &Path, points: usize, invert: bool) -> Result<(ImageTarget,
 
 /// A point set by its content: JSON, CSV (rows with commas) or text (columns separated by spaces), as
 /// [`Format`](crate::export::points::Format) describes them. A first row that holds no number names the columns; one
-/// named `class` holds each point's class. What follows a `#` is a comment; in CSV, a line that begins with it.
+/// named `class` holds each point's class. Of the objects of `fsot place` colours are the classes, if there are several,
+/// and sizes are left out. What follows a `#` is a comment; in CSV, a line that begins with it.
 ///
 /// # Errors
 /// As [`text`]; a value that is no finite number; rows of different lengths; no points; more than 8 coordinates.
@@ -225,7 +234,8 @@ pub fn points(path: &Path) -> Result<Table> {
 }
 
 fn json(text: &str) -> std::result::Result<Table, String> {
-    let json: Json = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    let json = serde_json::from_str(text).or_else(|error| objects(text).ok_or(error));
+    let json: Json = json.map_err(|error| error.to_string())?;
     if let Some(index) = json.points.iter().position(|point| point.len() != json.dims) {
         return Err(format!(
             "point {} has {}, not {}",
@@ -242,6 +252,19 @@ fn json(text: &str) -> std::result::Result<Table, String> {
         return Err("a coordinate is not finite".to_owned());
     }
     Ok(Table { points: Points::new(json.dims, coordinates), classes: json.classes.map(Labels::from_names) })
+}
+
+/// What `fsot place` writes.
+fn objects(text: &str) -> Option<Json> {
+    #[derive(Deserialize)]
+    struct Objects {
+        objects: Vec<Object>,
+    }
+    let Objects { objects } = serde_json::from_str(text).ok()?;
+    let points = objects.iter().map(|object| vec![object.x, object.y]).collect();
+    let several = objects.iter().any(|object| object.color != objects[0].color);
+    let classes = several.then(|| objects.iter().map(|object| object.color.to_string()).collect());
+    Some(Json { dims: 2, points, classes })
 }
 
 fn csv(text: &str) -> std::result::Result<Table, String> {
@@ -291,8 +314,10 @@ fn lines(text: &str) -> std::result::Result<Table, String> {
 fn rows(rows: impl Iterator<Item = (u64, Vec<String>)>) -> std::result::Result<Table, String> {
     let mut rows = rows.peekable();
     let header = rows.next_if(|(_, words)| words.iter().all(|word| word.parse::<f32>().is_err()));
-    let class_column = header.and_then(|(_, words)| words.iter().position(|word| word == "class"));
+    let names = header.map_or(Vec::new(), |(_, words)| words);
     let columns = rows.peek().map_or(1, |(_, words)| words.len());
+    let objects = names == OBJECT && columns == OBJECT.len();
+    let class_column = names.iter().position(|name| name == if objects { "color" } else { "class" });
     let mut coordinates = Vec::new();
     let mut classes = Vec::new();
     for (number, words) in rows {
@@ -309,11 +334,16 @@ fn rows(rows: impl Iterator<Item = (u64, Vec<String>)>) -> std::result::Result<T
                 _ => return Err(format!("line {number}: `{word}` is not a finite number")),
             }
         }
+        if objects {
+            // The size.
+            coordinates.pop();
+        }
     }
     let has_classes = class_column.is_some_and(|column| column < columns);
-    let dims = columns.saturating_sub(usize::from(has_classes));
+    let dims = columns.saturating_sub(usize::from(has_classes) + usize::from(objects));
     if dims == 0 {
         return Err("there are no coordinates".to_owned());
     }
-    Ok(Table { points: Points::new(dims, coordinates), classes: has_classes.then(|| Labels::from_names(classes)) })
+    let classes = has_classes.then(|| Labels::from_names(classes)).filter(|labels| !objects || labels.names.len() > 1);
+    Ok(Table { points: Points::new(dims, coordinates), classes })
 }

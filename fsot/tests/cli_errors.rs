@@ -64,6 +64,11 @@ fn pictures_that_are_none() {
     place.write("text.png", "no picture at all");
     place.write("broken.jpg", b"\xff\xd8\xff\xe0 and no more");
     std::fs::create_dir(place.path("folder.png")).unwrap();
+    // Of channels B, G and Y.
+    image::Rgb32FImage::new(4, 4).save(place.path("grey.exr")).unwrap();
+    let exr = place.read("grey.exr");
+    let red = exr.windows(2).position(|name| name == b"R\0").unwrap();
+    place.write("grey.exr", [&exr[..red], b"Y", &exr[red + 1..]].concat());
     for (options, message) in [
         ("--density missing.png", "missing.png"),
         ("--density black.png", "black.png is black everywhere"),
@@ -73,6 +78,7 @@ fn pictures_that_are_none() {
         ("--density empty.png", "empty.png is empty"),
         ("--density text.png", "text.png is not a picture"),
         ("--density broken.jpg", "broken.jpg is a damaged JPEG file"),
+        ("--density grey.exr", "grey.exr is OpenEXR without red, green and blue: channels R, G and B are read"),
         ("--density folder.png", "folder.png is a folder"),
         ("--density white.png -d 3", "use -d 2"),
         ("--density white.png --toroidal", "cannot be used with '--toroidal'"),

@@ -46,6 +46,22 @@ fn measures_points_classes_and_tiles() {
     assert_eq!(tile["temporal"][0]["alpha"], 0.5);
 }
 
+/// Colours are classes; a size is no coordinate.
+#[test]
+fn measures_what_place_wrote() {
+    let place = Place::new();
+    for (colours, name) in [(1, "o.csv"), (1, "o.json"), (3, "o.csv"), (3, "o.json")] {
+        place.succeed(&format!("place -n 60 --colors {colours} --sizes --iterations 9 --quiet --out {name}"));
+        let report: Value = serde_json::from_str(&place.succeed(&format!("measure --quick --json {name}"))).unwrap();
+        let report = &report["files"][0];
+        assert_eq!((&report["points"]["points"], &report["points"]["dims"]), (&60.into(), &2.into()), "{name}");
+        let classes = report["classes"].as_array().map_or(&[][..], Vec::as_slice);
+        assert_eq!(classes.len(), if colours > 1 { colours } else { 0 }, "{name}");
+        assert!(classes.iter().all(|class| class["report"]["points"] == 60 / colours), "{name}");
+        place.succeed(&format!("spectrum {name} --out s.png"));
+    }
+}
+
 /// As many classes as points: in seconds, and a report that ends.
 #[test]
 fn classes_without_end_are_left_out() {

@@ -1,7 +1,7 @@
 //! What is placed.
 
 /// A thing in its place.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Object {
     /// To the right, in [0, 1].
     pub x: f32,
