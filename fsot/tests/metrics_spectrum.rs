@@ -53,8 +53,10 @@ fn figures_of_a_grid_of_a_point_and_of_equal_points() {
     let spectrum = Spectrum::of_points(&equal, [0, 1]).unwrap();
     spectrum.power.iter().for_each(|p| assert_near(*p, 100.0, 1e-7, "equal points"));
     assert_near(spectrum.summary().low, 100.0, 1e-7, "P_low of equal points");
+    assert!(spectrum.summary().anisotropy.is_nan(), "{:?}", spectrum.summary());
     let one = Spectrum::of_points(&random(1, 2, 1), [0, 1]).unwrap();
     one.power.iter().for_each(|p| assert_near(*p, 1.0, 1e-9, "one point"));
+    assert!(one.summary().anisotropy.is_nan(), "{:?}", one.summary());
     assert!(one.summary().low.is_nan(), "there is no frequency below half the principal one");
 }
 

@@ -11,7 +11,8 @@ use serde::Serialize;
 
 /// Frequencies beyond this integer are not computed: it bounds the memory at about 0.7 GB plus 230 bytes per point.
 const FARTHEST: usize = 2400;
-/// A ring of less power than this is empty: its anisotropy would be that of rounding errors.
+/// A ring of less power than this is empty, one whose power varies by less of its square is flat: their anisotropy
+/// would be that of rounding errors.
 const EMPTY: f64 = 1e-14;
 
 /// A power spectrum on integer frequencies, white noise = 1, perhaps averaged over several realisations.
@@ -38,7 +39,7 @@ pub struct Ring {
     /// Mean power.
     pub power: f64,
     /// Variance of the power over its squared mean, in dB: Ulichney's anisotropy (1988). One realisation of an
-    /// isotropic process: 0; an average of N: -10 log10 N. Not a number where there is no power.
+    /// isotropic process: 0; an average of N: -10 log10 N. Not a number where there is no power, or the same everywhere.
     pub anisotropy: f64,
 }
 
@@ -129,8 +130,9 @@ impl Spectrum {
         let ring = |(radius, &[n, sum, squares]): (usize, &[f64; 3])| {
             let power = sum / n;
             let variance = squares / (n - 1.0);
-            let flat = power < EMPTY || variance <= 0.0;
-            let anisotropy = if flat { f64::NAN } else { 10.0 * libm::log10(variance / (power * power)) };
+            let relative = variance / (power * power);
+            let flat = power < EMPTY || relative < EMPTY;
+            let anisotropy = if flat { f64::NAN } else { 10.0 * libm::log10(relative) };
             Ring { frequency: radius as f64 / self.unit, power, anisotropy }
         };
         let rings = sums.iter().enumerate().skip(1).map(ring);
