@@ -205,6 +205,16 @@ fn equal_samples_everywhere_have_an_error_that_no_filter_removes() {
 }
 
 #[test]
+fn borders_are_counted_over_a_uniform_density() {
+    let mut points = [0.5; 2 * 64];
+    points[..4].copy_from_slice(&[0.0, 1.0, 0.015, 0.985]);
+    points[5] = 1.0;
+    let report = Tile { size: 8, spp: 1, dims: 2, frames: 1, points: Points::new(2, points.to_vec()) }.measure(2, &[]);
+    assert_eq!(report.border, [0.0, 3.0]);
+    assert!(report.to_string().contains("border: 0 to 3.000 of a uniform density"), "{report}");
+}
+
+#[test]
 fn the_error_spectrum_is_that_of_the_definition() {
     let (size, count) = (6, 4);
     let tile = Tile::random(size, 3, 2, 2, 4);

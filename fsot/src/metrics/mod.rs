@@ -4,6 +4,7 @@
 //! Seeds are fixed: the same points give the same figures on any number of threads, and across targets up to the
 //! rounding of the Fourier transforms.
 
+pub(crate) mod border;
 pub mod discrepancy;
 pub mod exponential_sums;
 pub mod figure;

@@ -77,10 +77,12 @@ impl Display for TileReport {
     /// A row per prefix, pair of dimensions, frame and temporal filter; columns: filters, for half-spaces and
     /// Gaussians.
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let TileReport { size, spp, dims, frames, integrands, .. } = self;
+        let TileReport { size, spp, dims, frames, border, integrands, .. } = self;
         let many = if *frames > 1 { format!(", {frames} frames") } else { String::new() };
         let [samples, dims] = [counted(spp, "sample"), counted(dims, "dimension")];
         writeln!(f, "  tile of {size}x{size} pixels, {samples} of {dims}{many}")?;
+        let [least, most] = border.map(|density| number(f64::from(density)));
+        writeln!(f, "  border: {least} to {most} of a uniform density within 1/64 of an end of an axis")?;
         let integrands = counted(integrands, "integrand");
         writeln!(f, "  error energy relative to white noise (1), {integrands} of each family")?;
         let names: String = ["G2.1", "A", "G1", "raw"].iter().map(|n| format!("{n:>10}")).collect();

@@ -1,5 +1,6 @@
 //! How visible the error of a sample tile is: its energy after a filter over the image, and without.
 
+use super::border;
 use super::integrands::{Family, Integrand};
 use super::plane::{Plane, Transform};
 use super::spectrum::Spectrum;
@@ -132,6 +133,8 @@ pub struct TileReport {
     pub dims: usize,
     /// Frames.
     pub frames: usize,
+    /// The least and the greatest density of an axis within 1/64 of a border, relative to a uniform one.
+    pub border: [f32; 2],
     /// Integrands of each family.
     pub integrands: usize,
     /// Energies by number of samples.
@@ -383,6 +386,7 @@ fn energies(tile: &TileView, axes: &[usize], prefixes: &[usize], first: u64, opt
         spp: tile.spp,
         dims: tile.dims,
         frames: tile.frames,
+        border: border::density(tile.dims, tile.coordinates),
         integrands: options.integrands.next_multiple_of(2),
         prefixes: prefixes.iter().zip(by_prefix).map(|(&spp, energies)| PrefixEnergies { spp, energies }).collect(),
         marginals: Vec::new(),

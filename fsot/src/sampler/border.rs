@@ -1,6 +1,7 @@
 //! The marginals of all pixels' points: what keeps each uniform, up to the borders of the unit square.
 
 use super::problem::OCTAVES;
+use crate::metrics::border;
 
 /// Bins of a marginal: eight in each stratum of the longest octave.
 pub(crate) const BINS: usize = 512;
@@ -51,12 +52,11 @@ impl Border {
 
     /// The least and the greatest density within 1/64 of a border, relative to a uniform one.
     pub(crate) fn extremes(&self, octave: usize) -> [f32; 2] {
-        let near = BINS / 64;
+        let near = BINS / border::PARTS;
         let axis = |axis: usize| (octave * 2 + axis) * BINS;
         let ends = [axis(0), axis(0) + BINS - near, axis(1), axis(1) + BINS - near];
-        let counts = ends.map(|start| self.counts[start..start + near].iter().sum::<i32>() as f32);
-        let uniform = near as f32 * self.means[octave];
-        [counts.into_iter().fold(f32::MAX, f32::min) / uniform, counts.into_iter().fold(0.0, f32::max) / uniform]
+        let counts = ends.map(|start| self.counts[start..start + near].iter().sum::<i32>() as usize);
+        border::extremes(counts, (self.means[octave] * BINS as f32) as usize)
     }
 
     /// Remembers the surplus.
