@@ -71,6 +71,8 @@ fn threads_and_interruptions_do_not_show() {
     other.step();
     assert_ne!(other.table(), whole.table());
     on(1, || whole.step());
+    // Within a step the state is that before it.
+    assert!(whole.advance().is_none() && whole.part() > 0.0);
     assert!(resumed.restore(whole.iteration(), whole.coordinates()));
     on(1, || whole.step());
     resumed.step();
@@ -145,7 +147,9 @@ fn the_command_writes_a_table_and_its_sidecar() {
     assert_eq!(place.names(), ["s.bin", "s.toml"]);
     let sidecar = String::from_utf8(place.read("s.toml")).unwrap();
     assert!(sidecar.contains("command = \"fsot sampler --size 32 --bits 1 "), "{sidecar}");
-    place.refuse("sampler --weights 1,2 --out t.bin", "--weights has 2 numbers");
+    place.refuse("sampler --weights 1,2 --out t.bin", "'--weights <WEIGHTS>': give 7 numbers, not 2");
+    let help = place.succeed("sampler --help");
+    assert!(help.contains("[default: 3,2,2.8,1.7,2.8,0.3,0.7]"), "{help}");
     for (options, message) in [
         ("--size 48", "size is 48; use 32, 64 or 128 pixels"),
         ("--bits 0", "bits is 0; use 1 to 6"),

@@ -3,7 +3,6 @@
 use crate::common::Common;
 use crate::drive::{drive, finish};
 use crate::names;
-use fsot::Error;
 use fsot::error::Result;
 use fsot::export::sidecar;
 use fsot::output::{self, Outputs};
@@ -11,7 +10,8 @@ use fsot::sampler::problem::{OCTAVES, iterations};
 use fsot::sampler::sidecar::SamplerOctave;
 use fsot::sampler::{SamplerOptimizer, SamplerProblem, SamplerSidecar};
 use serde_json::json;
-use std::fmt::Write;
+use std::fmt::{Display, Formatter, Write};
+use std::str::FromStr;
 
 /// What `fsot sampler` is asked for.
 #[derive(clap::Args, Debug)]
@@ -22,9 +22,9 @@ pub(crate) struct Args {
     /// Each pixel has 2^BITS offsets for each axis, 1 to 6
     #[arg(long, default_value_t = SamplerProblem::default().bits)]
     bits: u32,
-    /// How much the first 1, 2, 4, ... 64 samples count, separated by commas
-    #[arg(long, value_name = "WEIGHTS", value_delimiter = ',', default_values_t = SamplerProblem::default().weights)]
-    weights: Vec<f32>,
+    /// How much the first 1, 2, 4, ... 64 samples count: 7 numbers for any --bits, separated by commas
+    #[arg(long, default_value_t = Weights(SamplerProblem::default().weights))]
+    weights: Weights,
     /// The energy of two points is minus their distance to this power
     #[arg(long, value_name = "POWER", default_value_t = SamplerProblem::default().exponent)]
     #[arg(allow_negative_numbers = true)]
@@ -35,6 +35,26 @@ pub(crate) struct Args {
     border: f32,
     #[command(flatten)]
     pub(crate) common: Common,
+}
+
+/// A number for each octave.
+#[derive(Clone, Copy, Debug)]
+struct Weights([f32; OCTAVES]);
+
+impl Display for Weights {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", self.0.map(|weight| weight.to_string()).join(","))
+    }
+}
+
+impl FromStr for Weights {
+    type Err = String;
+
+    fn from_str(text: &str) -> std::result::Result<Weights, String> {
+        let number = |number: &str| number.parse().map_err(|_| format!("`{number}` is no number"));
+        let numbers: Vec<f32> = text.split(',').map(number).collect::<std::result::Result<_, _>>()?;
+        numbers.try_into().map(Weights).map_err(|all: Vec<f32>| format!("give {OCTAVES} numbers, not {}", all.len()))
+    }
 }
 
 /// Makes the table and writes it.
@@ -67,14 +87,11 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 }
 
 fn problem(args: &Args) -> Result<SamplerProblem> {
-    let weights: [f32; OCTAVES] = args.weights.clone().try_into().map_err(|_| {
-        Error::Input(format!("--weights has {} numbers: give one for each of {OCTAVES} octaves", args.weights.len()))
-    })?;
     let default = SamplerProblem::default();
     let problem = SamplerProblem {
         size: args.size,
         bits: args.bits,
-        weights,
+        weights: args.weights.0,
         exponent: args.exponent,
         border: args.border,
         iterations: args.common.given_effort().map_or(default.iterations, iterations),
@@ -88,12 +105,11 @@ fn problem(args: &Args) -> Result<SamplerProblem> {
 /// The command that makes the same file wherever it runs.
 fn command(args: &Args, problem: &SamplerProblem) -> String {
     let SamplerProblem { size, bits, weights, exponent, border, iterations, seed, .. } = problem;
-    let weights: Vec<String> = weights.iter().map(f32::to_string).collect();
+    let weights = Weights(*weights);
     let name = args.common.out.file_name().unwrap_or_default().to_string_lossy();
     format!(
-        "fsot sampler --size {size} --bits {bits} --weights {} --exponent {exponent} --border {border} --seed {seed} \
+        "fsot sampler --size {size} --bits {bits} --weights {weights} --exponent {exponent} --border {border} --seed {seed} \
          --iterations {iterations} --out {}",
-        weights.join(","),
         crate::tile::quoted(&name)
     )
 }
