@@ -49,19 +49,21 @@ pub(crate) struct Args {
     #[arg(short, long = "dims", value_name = "COUNT", default_value_t = 2)]
     #[arg(value_parser = clap::value_parser!(u8).range(1..=8))]
     d: u8,
-    /// Opposite faces of the cube are one: for points that will be repeated like a tile, or shifted
+    /// Opposite faces of the cube are one: for points that will be repeated like a tile, or shifted; without --density
     #[arg(long, conflicts_with = "density")]
     toroidal: bool,
     /// The probability of a projection along an axis: helps integrands that vary along axes (.3 is a good value)
     #[arg(long, value_name = "PROBABILITY", default_value_t = 0.0, allow_negative_numbers = true)]
     axis_priority: f32,
-    /// The first points are uniform too, for this many numbers of points, evenly spaced on a logarithmic scale
+    /// The first points are uniform too, for this many numbers of points, evenly spaced on a logarithmic scale; without
+    /// --classes
     #[arg(long, value_name = "LEVELS", conflicts_with = "classes", value_parser = clap::value_parser!(u32).range(1..))]
     progressive: Option<u32>,
     /// 2color, 3color, ramp, or a TOML or JSON file of classes
     #[arg(long, value_name = "CLASSES")]
     classes: Option<String>,
-    /// Points where the picture is bright: PNG, JPEG or OpenEXR (its longer side is the unit)
+    /// Points where the picture is bright, none where it is transparent: PNG, JPEG or OpenEXR (its longer side is the
+    /// unit)
     #[arg(long, value_name = "IMAGE")]
     density: Option<PathBuf>,
     /// Points where the picture is dark

@@ -21,7 +21,7 @@ pub(crate) struct Args {
     #[arg(short, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     #[arg(required_unless_present = "frames")]
     pub(super) n: Option<u32>,
-    /// Cyan, magenta, yellow and black dots instead of black ones
+    /// Cyan, magenta, yellow and black dots instead of black ones; without --invert and --frames
     #[arg(long, conflicts_with = "frames")]
     pub(super) cmyk: bool,
     /// White dots on black paper
