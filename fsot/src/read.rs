@@ -205,8 +205,8 @@ pub fn density(path: &Path, points: usize, invert: bool) -> Result<(ImageTarget,
 
 /// A point set by its content: JSON, CSV (rows with commas) or text (columns separated by spaces), as
 /// [`Format`](crate::export::points::Format) describes them. A first row that holds no number names the columns; one
-/// named `class` holds each point's class. Of the objects of `fsot place` colours are the classes, if there are several,
-/// and sizes are left out. What follows a `#` is a comment; in CSV, a line that begins with it.
+/// named `class` holds each point's class. Of the objects of `fsot place` several colours are classes, and sizes are
+/// left out. What follows a `#` is a comment; in CSV, a line that begins with it.
 ///
 /// # Errors
 /// As [`text`]; a value that is no finite number; rows of different lengths; no points; more than 8 coordinates.

@@ -39,7 +39,7 @@ pub struct Ring {
     /// Mean power.
     pub power: f64,
     /// Variance of the power over its squared mean, in dB: Ulichney's anisotropy (1988). One realisation of an
-    /// isotropic process: 0; an average of N: -10 log10 N. Not a number where there is no power, or the same everywhere.
+    /// isotropic process: 0; an average of N: -10 log10 N. Not a number where the power is 0, or the same everywhere.
     pub anisotropy: f64,
 }
 

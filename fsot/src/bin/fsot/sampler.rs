@@ -19,7 +19,7 @@ pub(crate) struct Args {
     /// Pixels along each side: 32, 64 or 128
     #[arg(long, value_name = "PIXELS", default_value_t = SamplerProblem::default().size)]
     size: usize,
-    /// Each pixel has 2^BITS offsets for each axis, 1 to 6
+    /// Each pixel has 2^BITS offsets for each axis, 1 to 6; fewer take longer, as each moves more points
     #[arg(long, default_value_t = SamplerProblem::default().bits)]
     bits: u32,
     /// How much the first 1, 2, 4, ... 64 samples count: 7 numbers for any --bits, separated by commas
@@ -108,8 +108,8 @@ fn command(args: &Args, problem: &SamplerProblem) -> String {
     let weights = Weights(*weights);
     let name = args.common.out.file_name().unwrap_or_default().to_string_lossy();
     format!(
-        "fsot sampler --size {size} --bits {bits} --weights {weights} --exponent {exponent} --border {border} --seed {seed} \
-         --iterations {iterations} --out {}",
+        "fsot sampler --size {size} --bits {bits} --weights {weights} --exponent {exponent} --border {border} \
+         --seed {seed} --iterations {iterations} --out {}",
         crate::tile::quoted(&name)
     )
 }
