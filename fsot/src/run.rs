@@ -22,8 +22,8 @@ pub trait Optimization {
         }
     }
 
-    /// Takes a step, or a part of one where steps take long; returns what [`step`](Optimization::step) does if that ends
-    /// the step. Until then the state is that before the step: what is saved meanwhile continues there.
+    /// Takes a step, or a part of one where steps take long; returns what [`step`](Optimization::step) does if the step
+    /// ends with it. Until then the state is that before the step: what is saved meanwhile continues there.
     fn advance(&mut self) -> Option<f64> {
         Some(self.step())
     }
