@@ -18,6 +18,7 @@ use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 use noisefloor::tile::MAGIC;
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -29,6 +30,7 @@ const LINE: usize = 100;
 const BYTE_ORDER_MARK: char = '\u{feff}';
 /// The columns of `fsot place`'s tables: an object's colour is its class, and its size is no coordinate.
 const OBJECT: [&str; 4] = ["x", "y", "color", "size"];
+const SIZE: usize = 3;
 const NO_PICTURE: &str = "not a picture that can be read: use PNG, JPEG or OpenEXR";
 
 /// The content of a tile's file, which begins as such files do; nothing else is known of it.
@@ -121,9 +123,9 @@ fn decode(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
         Error::Input(match error {
             ImageError::Limits(_) => too_large(&path.to_string(), png_size(bytes), None),
             // As the decoder says it; the exr library tells no more.
-            error if error.to_string().contains("rgb channels") => format!(
-                "{path} is {name} without red, green and blue: channels R, G and B are read, save it with these"
-            ),
+            error if format == ImageFormat::OpenExr && error.to_string().contains("rgb channels") => {
+                format!("{path} is {name} without red, green and blue, or deep: save it with flat channels R, G and B")
+            }
             error => format!("{path} is a damaged {name} file: {error}"),
         })
     };
@@ -234,7 +236,12 @@ pub fn points(path: &Path) -> Result<Table> {
 }
 
 fn json(text: &str) -> std::result::Result<Table, String> {
-    let json = serde_json::from_str(text).or_else(|error| objects(text).ok_or(error));
+    #[derive(Deserialize)]
+    struct Keys {
+        objects: Option<IgnoredAny>,
+    }
+    let keys = serde_json::from_str::<Keys>(text);
+    let json = if keys.is_ok_and(|keys| keys.objects.is_some()) { objects(text) } else { serde_json::from_str(text) };
     let json: Json = json.map_err(|error| error.to_string())?;
     if let Some(index) = json.points.iter().position(|point| point.len() != json.dims) {
         return Err(format!(
@@ -255,16 +262,16 @@ fn json(text: &str) -> std::result::Result<Table, String> {
 }
 
 /// What `fsot place` writes.
-fn objects(text: &str) -> Option<Json> {
+fn objects(text: &str) -> serde_json::Result<Json> {
     #[derive(Deserialize)]
     struct Objects {
         objects: Vec<Object>,
     }
-    let Objects { objects } = serde_json::from_str(text).ok()?;
+    let Objects { objects } = serde_json::from_str(text)?;
     let points = objects.iter().map(|object| vec![object.x, object.y]).collect();
     let several = objects.iter().any(|object| object.color != objects[0].color);
     let classes = several.then(|| objects.iter().map(|object| object.color.to_string()).collect());
-    Some(Json { dims: 2, points, classes })
+    Ok(Json { dims: 2, points, classes })
 }
 
 fn csv(text: &str) -> std::result::Result<Table, String> {
@@ -316,8 +323,11 @@ fn rows(rows: impl Iterator<Item = (u64, Vec<String>)>) -> std::result::Result<T
     let header = rows.next_if(|(_, words)| words.iter().all(|word| word.parse::<f32>().is_err()));
     let names = header.map_or(Vec::new(), |(_, words)| words);
     let columns = rows.peek().map_or(1, |(_, words)| words.len());
-    let objects = names == OBJECT && columns == OBJECT.len();
+    let objects = names == OBJECT;
     let class_column = names.iter().position(|name| name == if objects { "color" } else { "class" });
+    if objects && columns != OBJECT.len() {
+        return Err(format!("rows have {}, and the first names {}", counted(columns, "column"), OBJECT.join(",")));
+    }
     let mut coordinates = Vec::new();
     let mut classes = Vec::new();
     for (number, words) in rows {
@@ -330,13 +340,10 @@ fn rows(rows: impl Iterator<Item = (u64, Vec<String>)>) -> std::result::Result<T
                 continue;
             }
             match word.parse::<f32>() {
+                Ok(value) if value.is_finite() && objects && column == SIZE => {}
                 Ok(value) if value.is_finite() => coordinates.push(value),
                 _ => return Err(format!("line {number}: `{word}` is not a finite number")),
             }
-        }
-        if objects {
-            // The size.
-            coordinates.pop();
         }
     }
     let has_classes = class_column.is_some_and(|column| column < columns);

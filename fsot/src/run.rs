@@ -28,9 +28,9 @@ pub trait Optimization {
         Some(self.step())
     }
 
-    /// The part of the present step that is done.
-    fn part(&self) -> f64 {
-        0.0
+    /// The work that is done, and all of it, in any unit: by default steps, if these take alike long.
+    fn work(&self) -> [f64; 2] {
+        [self.iteration(), self.iterations()].map(|steps| steps as f64)
     }
 
     /// The state: coordinates, and what else a sampler remembers.

@@ -78,7 +78,7 @@ fn pictures_that_are_none() {
         ("--density empty.png", "empty.png is empty"),
         ("--density text.png", "text.png is not a picture"),
         ("--density broken.jpg", "broken.jpg is a damaged JPEG file"),
-        ("--density grey.exr", "grey.exr is OpenEXR without red, green and blue: channels R, G and B are read"),
+        ("--density grey.exr", "grey.exr is OpenEXR without red, green and blue, or deep: save it with flat"),
         ("--density folder.png", "folder.png is a folder"),
         ("--density white.png -d 3", "use -d 2"),
         ("--density white.png --toroidal", "cannot be used with '--toroidal'"),

@@ -1,6 +1,6 @@
 //! Point sets read back as they were written; exports that other programs accept.
 
-use fsot::export::points::{Format, Labels, Table, encode};
+use fsot::export::points::{Format, Labels, Table, encode, words};
 use fsot::export::tile;
 use fsot::points::Points;
 use fsot::read;
@@ -37,7 +37,7 @@ fn points_keep_their_bits() {
     }
 }
 
-/// Verbatim, but in text, where spaces separate them.
+/// Verbatim, but in text, where spaces separate them, and at their ends in CSV.
 #[test]
 fn classes_keep_their_names() {
     let folder = tempfile::tempdir().unwrap();
@@ -54,6 +54,8 @@ fn classes_keep_their_names() {
     assert!(encode(&same, Format::Csv).is_ok());
     let error = encode(&same, Format::Text).unwrap_err().to_string();
     assert!(error.contains("classes \"a b\" and \"a_b\" cannot be told apart"), "{error}");
+    // Readers of CSV take these for one.
+    assert!(words(&["red", "red "].map(str::to_owned)).is_err());
 }
 
 #[test]

@@ -72,8 +72,11 @@ fn threads_and_interruptions_do_not_show() {
     assert_ne!(other.table(), whole.table());
     on(1, || whole.step());
     // Within a step the state is that before it.
-    assert!(whole.advance().is_none() && whole.part() > 0.0);
+    let before = whole.work()[0];
+    assert!(whole.advance().is_none() && whole.work()[0] > before);
     assert!(resumed.restore(whole.iteration(), whole.coordinates()));
+    // Whoever looks changes nothing.
+    whole.measure();
     on(1, || whole.step());
     resumed.step();
     assert_eq!((resumed.iteration(), resumed.iterations()), (3, 3));
@@ -90,6 +93,13 @@ fn a_state_of_another_problem_is_refused() {
     wrong[0] = 0.5;
     assert!(!optimizer.restore(1, &wrong) && !optimizer.restore(1, &state[1..]) && !optimizer.restore(7, &state));
     assert_eq!(optimizer.table(), before);
+}
+
+/// Steps of 3, 5, 7 and 7 octaves, of 4, 16, 64 and 64 points and what a step takes beside.
+#[test]
+fn steps_cost_by_their_points() {
+    let optimizer = SamplerOptimizer::new(SamplerProblem { iterations: 4, ..small() }).unwrap();
+    assert_eq!(optimizer.work(), [0.0, 8.0 + 20.0 + 68.0 + 68.0]);
 }
 
 /// The command has no option for it: it checks all others.

@@ -107,7 +107,8 @@ pub fn encode(table: &Table, format: Format) -> Result<Vec<u8>> {
     }
 }
 
-/// Names as words: spaces and `#` in them, or nothing, become `_`.
+/// Names as words: without white space at their ends, which readers of CSV remove. Spaces and `#` in them, or nothing,
+/// become `_`.
 ///
 /// # Errors
 /// Two of them are then the same.
@@ -115,7 +116,7 @@ pub fn words<'a>(names: impl IntoIterator<Item = &'a String>) -> Result<Vec<Stri
     let unfit = |c: char| c.is_whitespace() || c.is_control() || c == '#';
     let mut known = HashMap::new();
     let word = |name: &'a String| {
-        let word = if name.is_empty() { "_".to_owned() } else { name.replace(unfit, "_") };
+        let word = if name.trim().is_empty() { "_".to_owned() } else { name.trim().replace(unfit, "_") };
         match known.insert(word.clone(), name) {
             Some(other) => Err(Error::Input(format!(
                 "classes {other:?} and {name:?} cannot be told apart: give them names that differ in more than spaces, \

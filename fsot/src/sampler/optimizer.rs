@@ -121,8 +121,12 @@ impl SamplerOptimizer {
         Ok(optimizer)
     }
 
-    /// What there is now, of all octaves.
+    /// What there is now, of all octaves. A part of a step is taken anew.
     pub fn measure(&mut self) -> SamplerReport {
+        if self.present.is_some() {
+            let before = self.coordinates.clone();
+            self.restore(self.iteration, &before);
+        }
         let energy = Energy::new(&self.basis, &[1.0; OCTAVES]);
         let groups = Groups::new(&self.problem, energy.points);
         let all = self.survey(&energy, &groups);
@@ -140,7 +144,7 @@ impl SamplerOptimizer {
         all
     }
 
-    /// The table as it is now.
+    /// The table as it is now, also within a step.
     pub fn table(&self) -> SamplerTable {
         let count = 1 << self.problem.bits;
         let texel = |offsets: &Offsets, i: usize| [offsets[0][i], offsets[1][i]];
@@ -437,8 +441,9 @@ impl Optimization for SamplerOptimizer {
         Some(step.before)
     }
 
-    fn part(&self) -> f64 {
-        self.present.as_ref().map_or(0.0, |step| step.sweeps as f64 / SWEEPS as f64)
+    fn work(&self) -> [f64; 2] {
+        let part = self.present.as_ref().map_or(0.0, |step| step.sweeps as f64 / SWEEPS as f64);
+        [self.iteration as f64 + part, self.problem.iterations as f64].map(|steps| self.problem.work(steps))
     }
 
     fn coordinates(&self) -> &[f32] {

@@ -91,6 +91,20 @@ impl SamplerProblem {
         check(self.iterations <= 1 << 40, "iterations", self.iterations, "at most 2^40")
     }
 
+    /// What so many steps cost, in about the time that a point of one takes.
+    pub(crate) fn work(&self, steps: f64) -> f64 {
+        // What a step takes beside its points is as four of them.
+        let cost = |octaves: usize| f64::from(4 + (1_u32 << (octaves - 1)));
+        let (mut begin, mut sum) = (0.0, 0.0);
+        for Stage { end, octaves, .. } in STAGES {
+            // The first step of the next, as `stage` has it.
+            let end = libm::ceil(end * self.iterations as f64 - 0.5);
+            sum += (steps.min(end) - begin).max(0.0) * cost(octaves);
+            begin = end;
+        }
+        sum
+    }
+
     /// The octaves' weights at a step, and the temperature.
     pub(crate) fn stage(&self, iteration: u64) -> ([f32; OCTAVES], f32) {
         let part = (iteration as f64 + 0.5) / self.iterations.max(1) as f64;

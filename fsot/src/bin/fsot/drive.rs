@@ -23,6 +23,8 @@ const LINE_EVERY: Duration = Duration::from_secs(10);
 const WORTH_SAVING: Duration = Duration::from_secs(5);
 /// The energy shown is a moving average over about this many steps: that of a single step depends on its directions.
 const AVERAGED: f64 = 32.0;
+/// Parts of the progress bar.
+const BAR: u64 = 1000;
 
 /// A finished run, whose checkpoint stays until [`finish`].
 #[derive(Debug)]
@@ -156,6 +158,8 @@ fn leave(optimization: &dyn Optimization, path: &Path, problem: &Problem, why: O
 struct Progress {
     start: Instant,
     first: u64,
+    /// The work that was done before.
+    before: f64,
     energy: Option<f64>,
     announced: bool,
     quiet: bool,
@@ -170,6 +174,7 @@ impl Progress {
         Progress {
             start: Instant::now(),
             first: optimization.iteration(),
+            before: optimization.work()[0],
             energy: None,
             announced: common.quiet,
             quiet: common.quiet,
@@ -200,33 +205,34 @@ impl Progress {
     /// After a step, whose energy there is then, or a part of one.
     fn step(&mut self, optimization: &dyn Optimization, energy: Option<f64>) {
         let [done, all] = [optimization.iteration(), optimization.iterations()];
-        let steps = done.saturating_sub(self.first) as f64 + optimization.part();
+        let work = optimization.work();
         if let Some(energy) = energy {
-            let weight = 1.0 / steps.min(AVERAGED);
+            let weight = 1.0 / (done.saturating_sub(self.first) as f64).clamp(1.0, AVERAGED);
             self.energy = Some(self.energy.map_or(energy, |average| average + weight * (energy - average)));
         }
         if self.quiet {
             return;
         }
         if !self.announced && (self.start.elapsed() >= MEASURED || done == all) {
-            self.announce(done, all, steps);
+            self.announce(done, all, work);
         }
         let energy = self.energy.map_or("-".to_owned(), |energy| format!("{energy:.3e}"));
+        let message = format!("energy {energy}, {} left", HumanDuration(self.left(work)));
         if let Some(bar) = &self.bar {
-            bar.set_position(done);
-            bar.set_message(energy);
+            let [done, all] = work;
+            bar.set_position((done / all * BAR as f64) as u64);
+            bar.set_message(message);
         } else if self.announced && self.line.elapsed() >= LINE_EVERY {
             self.line = Instant::now();
-            let left = self.left(all, steps);
-            self.say(&format!("step {done} of {all}, energy {energy}, {} left", HumanDuration(left)));
+            self.say(&format!("step {done} of {all}, {message}"));
         }
     }
 
     /// Says what the run costs, extrapolated from its first steps, and starts the bar if there is a terminal.
-    fn announce(&mut self, done: u64, all: u64, steps: f64) {
+    fn announce(&mut self, done: u64, all: u64, work: [f64; 2]) {
         self.announced = true;
         let threads = rayon::current_num_threads();
-        let total = self.start.elapsed().saturating_add(self.left(all, steps));
+        let total = self.start.elapsed().saturating_add(self.left(work));
         let duration = if total.as_secs() < 2 {
             format!("{:.1} seconds", total.as_secs_f64())
         } else {
@@ -236,18 +242,17 @@ impl Progress {
         let [steps, threads] = [counted(all - self.first, "step"), counted(threads, "thread")];
         self.say(&format!("{steps}, about {duration} on {threads}{memory}"));
         if std::io::stderr().is_terminal() && done < all {
-            let style = ProgressStyle::with_template("{wide_bar} {percent}% energy {msg}, {eta} left");
-            let bar = ProgressBar::new(all).with_position(self.first);
+            let style = ProgressStyle::with_template("{wide_bar} {percent}% {msg}");
+            let bar = ProgressBar::new(BAR);
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-            bar.reset_eta();
             self.bar = Some(bar);
         }
         self.line = Instant::now();
     }
 
-    /// How long what is left of `all` takes, when `steps` took as long as they did.
-    fn left(&self, all: u64, steps: f64) -> Duration {
-        let seconds = self.start.elapsed().as_secs_f64() / steps * (all.saturating_sub(self.first) as f64 - steps);
+    /// How long the rest of the work takes, if it goes on as until now.
+    fn left(&self, [done, all]: [f64; 2]) -> Duration {
+        let seconds = self.start.elapsed().as_secs_f64() / (done - self.before) * (all - done);
         Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)
     }
 }

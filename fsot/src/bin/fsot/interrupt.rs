@@ -4,8 +4,8 @@ use fsot::error::{Error, Result};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::fs;
+use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, LazyLock, Once};
 
 /// The exit code of a stopped run.
 pub(crate) const EXIT: u8 = 130;
@@ -14,7 +14,7 @@ pub(crate) const EXIT: u8 = 130;
 const SIGHUP: i32 = 1;
 
 /// Whether the next signal ends the program: nobody watches, or one has come before.
-static ENDS: LazyLock<Arc<AtomicBool>> = LazyLock::new(|| Arc::new(AtomicBool::new(true)));
+static ENDS: AtomicBool = AtomicBool::new(true);
 static HANDLERS: Once = Once::new();
 
 /// While it exists, the first signal only sets [`stopped`](Watch::stopped); a second one ends the program. Whoever has
@@ -26,8 +26,8 @@ impl Watch {
         let mut result = Ok(());
         HANDLERS.call_once(|| {
             result = [SIGINT, SIGTERM].into_iter().chain(hangup()).try_for_each(|signal| {
-                flag::register_conditional_shutdown(signal, i32::from(EXIT), Arc::clone(&ENDS))?;
-                flag::register(signal, Arc::clone(&ENDS)).map(drop)
+                flag::register_conditional_shutdown(signal, i32::from(EXIT), &ENDS)?;
+                flag::register(signal, &ENDS).map(drop)
             });
         });
         result.map_err(|error: std::io::Error| Error::Input(format!("cannot watch for Ctrl-C: {error}")))?;

@@ -1,9 +1,11 @@
 //! What corrects: the light that the fits say, interpolated between the points of a grid.
 
 use super::super::products::*;
-use super::{FUNCTIONS, MOST, SLOPES, SQRT_3, SQRT_5, linear};
+use super::functions::*;
 use core::f32::consts::LOG2_E;
 
+/// q is no further from 0.
+pub(super) const MOST: f32 = 50.0;
 /// Points along a coordinate, and cells between them.
 const POINTS: usize = CELLS + 1;
 const CELLS: usize = 16;

@@ -6,6 +6,7 @@
 //! kept from 0 to the largest of them. What corrects is h's bilinear interpolant between 17 x 17 points of the two
 //! coordinates, whose integral the trapezoid rule gives: the correction's mean is 0 whatever was fitted.
 
+mod functions;
 mod interpolant;
 mod regression;
 
@@ -16,21 +17,14 @@ use super::groups::Place;
 use super::products::*;
 use crate::basis::MAX_DIMS;
 use crate::control_variate::Config;
+use functions::*;
 use interpolant::Interpolant;
 
 /// The fewest samples of a pixel that say whether it is cut by an edge.
 const FEWEST_SAMPLES: usize = 4;
 /// The fewest pixels of a group.
 const FEWEST_PIXELS: usize = 8;
-/// Functions of the coordinates: of degree 1, then of degree 2.
-const FUNCTIONS: usize = 5;
-/// Those that A has.
-const SLOPES: usize = 2;
 const MAX_COLUMNS: usize = MAX_FIXED + FUNCTIONS;
-/// q is no further from 0.
-const MOST: f32 = 50.0;
-const SQRT_3: f32 = super::batch::SQRT_3 as f32;
-const SQRT_5: f32 = 2.236_068;
 
 impl Call<'_> {
     pub(super) fn has_edges(&self) -> bool {
@@ -64,26 +58,6 @@ pub(super) struct Edges<'a> {
     most: [[Eight; Config::MAX_CHANNELS]; COLOURS],
     /// The light that a pixel's fits say, at points.
     interpolant: Interpolant<'a>,
-}
-
-/// The orthonormal Legendre polynomial of degree 1 of a coordinate.
-const fn linear(u: f32) -> f32 {
-    (u + u - 1.0) * SQRT_3
-}
-
-#[inline(always)]
-fn functions(x: &Four, y: &Four) -> [Four; FUNCTIONS] {
-    let mut out = [[NONE; AT_ONCE]; FUNCTIONS];
-    let place = |u: &Eight| lanes::each(u, linear);
-    let square = |x: &Eight| lanes::each(x, |x| (x * x - 1.0) * (0.5 * SQRT_5));
-    for row in 0..AT_ONCE {
-        let (x, y) = (place(&x[row]), place(&y[row]));
-        let xy = product(&x, &y);
-        for (out, function) in out.iter_mut().zip([x, y, square(&x), xy, square(&y)]) {
-            out[row] = function;
-        }
-    }
-    out
 }
 
 impl<'a> Edges<'a> {

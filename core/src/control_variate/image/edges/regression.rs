@@ -2,7 +2,9 @@
 
 use super::super::batch::{Batch, MAX_FIXED};
 use super::super::products::*;
-use super::{Edges, FUNCTIONS, MAX_COLUMNS, MOST, SLOPES, functions};
+use super::functions::*;
+use super::interpolant::MOST;
+use super::{Edges, MAX_COLUMNS};
 use crate::control_variate::Config;
 use core::f32::consts::{LN_2, LOG2_E};
 
