@@ -95,6 +95,7 @@ impl Invalid {
     }
 }
 
+/// Without the rule: to say it to a person, display the [`Invalid`] itself.
 impl From<Invalid> for Error {
     fn from(invalid: Invalid) -> Error {
         invalid.error

@@ -101,6 +101,6 @@ pub mod warp;
 
 pub use error::{Error, Invalid};
 
-#[cfg(all(doctest, feature = "sampler"))]
+#[cfg(all(doctest, feature = "control-variate", feature = "sampler"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

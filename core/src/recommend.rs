@@ -23,7 +23,7 @@ use crate::error::{Error, ensure};
 pub enum Sampling {
     /// Independent of each other.
     Independent,
-    /// A tile's, a Sobol sequence's, or jittered.
+    /// [`sampler`](crate::sampler)'s, a tile's, a Sobol sequence's, or jittered.
     Stratified,
 }
 

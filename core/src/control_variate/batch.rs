@@ -60,12 +60,13 @@ fn size(config: &Config, plan: &Plan, n: usize) -> Option<usize> {
 /// - [`Error::Unsupported`]: options that exclude each other.
 ///
 /// ```
-/// use noisefloor::control_variate::{Config, Estimator, Samples, estimate};
+/// use noisefloor::control_variate::{Config, Estimator, Samples, estimate, workspace_len};
 ///
 /// // A polynomial of the fit's order is integrated exactly.
 /// let config = Config { estimator: Estimator::LeastSquares, ..Config::new(1, 1, 1) };
 /// let samples = Samples::new(&[0.1, 0.3, 0.9], &[1.1, 1.3, 1.9]);
-/// let estimate = estimate(&config, samples, &mut [0.0_f64; 128])?;
+/// let mut workspace = vec![0.0; workspace_len::<f64>(&config, 3)?];
+/// let estimate = estimate(&config, samples, &mut workspace)?;
 /// assert!((estimate.mean[0] - 1.5).abs() < 1e-4);
 /// # Ok::<(), noisefloor::Error>(())
 /// ```

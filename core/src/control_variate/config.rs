@@ -112,11 +112,11 @@ pub struct Config {
     pub estimator: Estimator,
     /// The functions that are combined.
     pub basis: Family,
-    /// Whether the samples are stratified (a tile, Sobol points, a lattice) instead of independent. Of one pixel all
-    /// estimators are then the mean but [`Estimator::LeastSquares`] and [`Estimator::GradientDescent`]: what corrects
-    /// some samples by fits to others undoes what is even about all, and the errors that decide how far do not show it.
-    /// Fits shared by pixels correct all the same, take their standard errors from the pixels' spread, and trust it
-    /// alone where it speaks for a fit.
+    /// Whether the samples are stratified ([`sampler`](crate::sampler), a tile, Sobol points, a lattice) instead of
+    /// independent. Of one pixel all estimators are then the mean but [`Estimator::LeastSquares`] and
+    /// [`Estimator::GradientDescent`]: what corrects some samples by fits to others undoes what is even about all, and
+    /// the errors that decide how far do not show it. Fits shared by pixels correct all the same, take their standard
+    /// errors from the pixels' spread, and trust it alone where it speaks for a fit.
     pub stratified: bool,
     /// If above 1, the last coordinate picks one of this many equally likely alternatives (figure 4.15). Each takes a
     /// term: at most 136 less binomial(dims - 1 + order, order), the terms of the other coordinates, less `controls`.
@@ -180,7 +180,8 @@ impl Config {
     /// Checks every field.
     ///
     /// # Errors
-    /// The rule that is broken, with what [`terms`](Self::terms) answers.
+    /// The rule that is broken, with what [`terms`](Self::terms) answers. Functions may allow less, as their own errors
+    /// say.
     pub fn check(&self) -> Result<(), Invalid> {
         self.checked_shape().map(|_| ())
     }

@@ -10,7 +10,8 @@
 //! - [`fill()`]: many pixels and samples at once, the same bits.
 //! - [`table`]: the table, for ports to GPUs.
 //!
-//! `docs/sampling.md` has a renderer's loop, animation and denoisers.
+//! `docs/sampling.md` has a renderer's loop, animation and denoisers. To estimates these samples are
+//! [`stratified`](crate::control_variate::Config::stratified).
 //!
 //! ```
 //! use noisefloor::sampler::Sampler;
