@@ -58,7 +58,7 @@ typedef struct nf_cv_config {
     uint32_t channels; // Values of a sample, 1 to 4.
     uint32_t estimator; // NF_CV_*
     uint32_t basis; // NF_BASIS_*
-    // 1 if a pixel's samples are stratified (a tile, Sobol points, a lattice). One pixel's estimate is then the plain
+    // 1 if a pixel's samples are stratified (nf_sampler, a tile, Sobol points). One pixel's estimate is then the plain
     // mean, but for NF_CV_LEAST_SQUARES and NF_CV_GRADIENT_DESCENT: fits to some of the samples undo what is even
     // about all. Fits shared by pixels correct all the same.
     uint32_t stratified;

@@ -73,7 +73,7 @@ pub struct nf_cv_config {
     pub estimator: u32,
     /// NF_BASIS_*
     pub basis: u32,
-    /// 1 if a pixel's samples are stratified (a tile, Sobol points, a lattice). One pixel's estimate is then the plain
+    /// 1 if a pixel's samples are stratified (nf_sampler, a tile, Sobol points). One pixel's estimate is then the plain
     /// mean, but for NF_CV_LEAST_SQUARES and NF_CV_GRADIENT_DESCENT: fits to some of the samples undo what is even
     /// about all. Fits shared by pixels correct all the same.
     pub stratified: u32,

@@ -143,10 +143,14 @@ pub(crate) fn finish(outputs: Outputs, run: &Run) -> Result<()> {
 
 /// Saves the state of a run that ends here, and says so, unless there is another reason.
 fn leave(optimization: &dyn Optimization, path: &Path, problem: &Problem, why: Option<Error>) -> Error {
+    let [done, all] = [optimization.iteration(), optimization.iterations()];
+    if done == 0 {
+        let nothing = "stopped before the first step was done: there is nothing to continue";
+        return why.unwrap_or_else(|| Error::Stopped(nothing.to_owned()));
+    }
     if let Err(error) = checkpoint::save(path, problem, optimization) {
         return Error::Input(format!("stopped, and the state could not be saved: {error}"));
     }
-    let [done, all] = [optimization.iteration(), optimization.iterations()];
     why.unwrap_or_else(|| {
         Error::Stopped(format!(
             "stopped at step {done} of {all}; the state is saved in {}. Run the same command again to continue",
