@@ -88,6 +88,11 @@ pub struct Invalid {
     pub rule: &'static CStr,
 }
 
+/// Refuses a field that is not as the rule says.
+pub(crate) fn rule(is_kept: bool, rule: &'static CStr) -> Result<(), Invalid> {
+    ensure(is_kept, Invalid::range(rule))
+}
+
 impl Invalid {
     /// A field out of its range.
     pub(crate) const fn range(rule: &'static CStr) -> Self {

@@ -1,8 +1,7 @@
 //! What an estimate is made with.
 
 use crate::basis::{Family, MAX_DIMS, MAX_ORDER, MAX_TERMS, Shape};
-use crate::error::{Error, Invalid, ensure};
-use core::ffi::CStr;
+use crate::error::{Error, Invalid, ensure, rule};
 use core::num::NonZeroUsize;
 
 /// How many folds there are, if the caller names no number.
@@ -188,7 +187,6 @@ impl Config {
 
     /// Checks every field, and returns how many functions there are.
     pub(crate) fn checked_shape(&self) -> Result<Shape, Invalid> {
-        let rule = |is_kept, rule: &'static CStr| ensure(is_kept, Invalid::range(rule));
         rule((1..=MAX_DIMS).contains(&self.dims), c"dims must be 1 to 16")?;
         rule(self.order <= MAX_ORDER, c"order must be 0 to 7")?;
         rule((1..=Self::MAX_CHANNELS).contains(&self.channels), c"channels must be 1 to 4")?;
@@ -214,9 +212,9 @@ impl Config {
         let square_root = c"solver must not be the square root but for least squares without an automatic ridge";
         excluded(self.solver != Solver::SquareRoot || is_least_squares, square_root)?;
         excluded(self.solver != Solver::Dual || self.controls == 0, c"solver must not be the dual with controls")?;
-        let rule = c"dims, order, slices and controls make more than 136 terms: lower one of them";
+        let terms = c"dims, order, slices and controls make more than 136 terms: lower one of them";
         let shape = Shape::new(self.dims, self.order, self.slices, MAX_TERMS - self.controls);
-        shape.map_err(|error| Invalid { error, rule })
+        shape.map_err(|error| Invalid { error, rule: terms })
     }
 
     /// Numbers from one sample's coordinates to the next.

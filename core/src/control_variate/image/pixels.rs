@@ -1,7 +1,7 @@
 //! The pixels of an image, and which of them share fits.
 
 use crate::control_variate::Config;
-use crate::error::{Error, Invalid, ensure};
+use crate::error::{Error, Invalid, ensure, rule};
 
 /// The pixels' axes: x, y and frames.
 pub(super) const MAX_AXES: usize = 3;
@@ -172,10 +172,9 @@ impl Image<'_> {
 
     /// Where its windows lie.
     pub(super) fn windows(&self) -> Result<Windows, Invalid> {
-        let ensure = |is_kept, rule| ensure(is_kept, Invalid::range(rule));
-        ensure(self.width > 0 && self.height > 0, c"width and height must be at least 1")?;
+        rule(self.width > 0 && self.height > 0, c"width and height must be at least 1")?;
         let is_whole = self.given.is_empty() && self.wanted.is_empty();
-        ensure(is_whole || !self.unordered, c"given and wanted must be all zero where pixels are unordered")?;
+        rule(is_whole || !self.unordered, c"given and wanted must be all zero where pixels are unordered")?;
         // Pixels without places are a row, and its own window.
         let image = match self.unordered {
             true => [self.pixels()?, 1, 1],
@@ -192,18 +191,18 @@ impl Image<'_> {
         let is_small = width.saturating_mul(height).saturating_mul(frames) <= Self::MAX_WINDOW;
         if self.unordered {
             let is_kept = is_small || self.surfaces.is_empty();
-            ensure(is_kept, c"pixels with surfaces must be at most 1024 where they are unordered")?;
+            rule(is_kept, c"pixels with surfaces must be at most 1024 where they are unordered")?;
         } else {
-            ensure(is_small, c"window must be at most 1024 pixels, all frames together")?;
+            rule(is_small, c"window must be at most 1024 pixels, all frames together")?;
         }
-        ensure(stride <= side, c"stride must be at most window")?;
-        ensure(given.is_within(&all), c"given must lie in the image, and have pixels")?;
-        ensure(wanted.is_within(&given), c"wanted must lie in what is given, and have pixels")?;
+        rule(stride <= side, c"stride must be at most window")?;
+        rule(given.is_within(&all), c"given must lie in the image, and have pixels")?;
+        rule(wanted.is_within(&given), c"wanted must lie in what is given, and have pixels")?;
         let (extent, is_ordered) = ([width, height, frames], !self.unordered);
         let mut windows = Windows { extent, stride, image, is_ordered, given, wanted, used: Rectangle::default() };
         windows.used = windows.with_pixels(&wanted);
         let is_enough = windows.needed().is_within(&given);
-        ensure(is_enough, c"given must hold the windows of wanted whole: see nf_cv_image_needed()").map(|()| windows)
+        rule(is_enough, c"given must hold the windows of wanted whole: see nf_cv_image_needed()").map(|()| windows)
     }
 
     pub(super) fn frames(&self) -> usize {
