@@ -240,8 +240,8 @@ fn json(text: &str) -> std::result::Result<Table, String> {
     struct Keys {
         objects: Option<IgnoredAny>,
     }
-    let keys = serde_json::from_str::<Keys>(text);
-    let json = if keys.is_ok_and(|keys| keys.objects.is_some()) { objects(text) } else { serde_json::from_str(text) };
+    let has_objects = || serde_json::from_str::<Keys>(text).is_ok_and(|keys| keys.objects.is_some());
+    let json = serde_json::from_str(text).or_else(|error| if has_objects() { objects(text) } else { Err(error) });
     let json: Json = json.map_err(|error| error.to_string())?;
     if let Some(index) = json.points.iter().position(|point| point.len() != json.dims) {
         return Err(format!(

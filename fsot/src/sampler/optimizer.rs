@@ -425,10 +425,7 @@ impl Optimization for SamplerOptimizer {
     }
 
     fn advance(&mut self) -> Option<f64> {
-        let mut step = match self.present.take() {
-            Some(step) => step,
-            None => self.begin(),
-        };
+        let mut step = self.present.take().unwrap_or_else(|| self.begin());
         let Step { energy, groups, temperature, fields, all, sweeps, .. } = &mut step;
         self.sweep(*sweeps, (energy, groups, *temperature), fields, all);
         *sweeps += 1;

@@ -2,6 +2,7 @@
 
 use crate::common::Common;
 use crate::interrupt::Watch;
+use crate::process::status;
 use crate::say::say;
 use fsot::checkpoint::{self, Problem};
 use fsot::counted::counted;
@@ -220,16 +221,19 @@ impl Progress {
         if !self.announced && (self.start.elapsed() >= MEASURED || done == all) {
             self.announce(done, all, work);
         }
-        let energy = self.energy.map_or("-".to_owned(), |energy| format!("{energy:.3e}"));
-        let message = format!("energy {energy}, {} left", HumanDuration(self.left(work)));
         if let Some(bar) = &self.bar {
             let [done, all] = work;
             bar.set_position((done / all * BAR as f64) as u64);
-            bar.set_message(message);
+            bar.set_message(self.message(work));
         } else if self.announced && self.line.elapsed() >= LINE_EVERY {
             self.line = Instant::now();
-            self.say(&format!("step {done} of {all}, {message}"));
+            self.say(&format!("step {done} of {all}, {}", self.message(work)));
         }
+    }
+
+    fn message(&self, work: [f64; 2]) -> String {
+        let energy = self.energy.map_or("-".to_owned(), |energy| format!("{energy:.3e}"));
+        format!("energy {energy}, {} left", HumanDuration(self.left(work)))
     }
 
     /// Says what the run costs, extrapolated from its first steps, and starts the bar if there is a terminal.
@@ -263,8 +267,6 @@ impl Progress {
 
 /// The most memory this process has used, in MiB, where the system tells.
 fn peak_memory() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kibibytes: u64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
+    let kibibytes: u64 = status("VmHWM")?.trim_end_matches("kB").trim().parse().ok()?;
     Some(kibibytes.div_ceil(1024))
 }

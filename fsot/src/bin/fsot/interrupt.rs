@@ -1,9 +1,9 @@
 //! Ctrl-C, SIGTERM and SIGHUP: at once, unless there is something to save or to complete first.
 
+use crate::process::status;
 use fsot::error::{Error, Result};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
-use std::fs;
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -48,8 +48,6 @@ impl Drop for Watch {
 
 /// The signal of a terminal that closes, where the system says that it is not ignored: `nohup` must work.
 fn hangup() -> Option<i32> {
-    let status = fs::read_to_string("/proc/self/status").ok()?;
-    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"))?;
-    let ignored = u64::from_str_radix(ignored.trim(), 16).ok()?;
+    let ignored = u64::from_str_radix(&status("SigIgn")?, 16).ok()?;
     (ignored & 1 == 0).then_some(SIGHUP)
 }

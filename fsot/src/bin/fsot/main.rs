@@ -13,6 +13,7 @@ mod names;
 mod pictures;
 mod place;
 mod points;
+mod process;
 mod sampler;
 mod say;
 mod scenes;
