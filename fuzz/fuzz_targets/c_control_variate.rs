@@ -6,6 +6,7 @@ mod support;
 
 use arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
+use noisefloor::basis::Family;
 use noisefloor_c::*;
 use std::ptr::{from_ref, null, null_mut};
 use support::{Array, Source};
@@ -21,7 +22,7 @@ fn config(source: &mut Source<'_>) -> Result<nf_cv_config> {
         order: source.small(4)?,
         channels: source.small(4)?,
         estimator: source.small(6)?,
-        basis: source.small(4)?,
+        basis: source.small(Family::ALL.len() as u32)?,
         stratified: u32::from(source.rarely(8)?),
         slices: source.small(4)?.saturating_sub(2),
         edges: source.small(4)?.saturating_sub(2),

@@ -27,7 +27,7 @@ extern "C" {
 
 #define NF_BASIS_LEGENDRE 0 // Basis: products of orthonormal shifted Legendre polynomials. The default.
 #define NF_BASIS_STEP 1 // Basis: products of Walsh functions, constant on the cells of a grid of eighths.
-#define NF_BASIS_SINE 2 // Basis: products of half-waves sin(pi d x + pi/2).
+#define NF_BASIS_SINE 2 // Basis: products of half-waves sin(pi d x + pi/2), which are cos(pi d x).
 #define NF_BASIS_GAUSSIAN 3 // Basis: isotropic Gaussians, as many as Legendre has terms.
 
 #define NF_SOLVER_AUTO 0 // Solver: dual for n below the terms and no `controls`, else normal equations. The default.

@@ -109,6 +109,8 @@ def parts(state, *names):
     """These parts of a saved state."""
     try:
         return [state[name] for name in names]
+    except TypeError:
+        raise TypeError(f"the state is a {type(state).__name__}: what state_dict() returned is expected") from None
     except KeyError as error:
         raise ValueError(f"the state has no {error}: it must be state_dict()'s, of this version") from None
 
@@ -128,14 +130,14 @@ def check_shape(name, values, expected, meaning):
 
 
 def check_finite(name, view):
-    """The numbers as float32; refuses what is then not finite."""
+    """Numbers of an array as float32; refuses what is then not finite."""
     narrow = floats(name, view)
     check(name, view, numpy.isfinite(narrow), "finite, and within float32's range, 3.4e38")
     return narrow
 
 
 def check_positive(name, view):
-    """The numbers as float32; refuses what is then no finite number of at least 0."""
+    """Numbers of an array as float32; refuses what is then no finite number of at least 0."""
     narrow = floats(name, view)
     check(name, view, numpy.isfinite(narrow) & (narrow >= 0), "at least 0 and finite, within float32's range, 3.4e38")
     return narrow

@@ -58,7 +58,7 @@ def estimate(
     Args:
         u: shape (..., n, d), 0 to 1: the coordinates of each sample.
         f: shape (..., n), finite; with `channels` (..., n, c), 1 to 4 of them. Leading dimensions broadcast with u's.
-        order: largest total degree of the polynomials, 0 to 7; 0 is the plain mean. At most 136 terms.
+        order: largest total degree of the functions, 0 to 7; 0 is the plain mean. At most 136 terms.
         estimator: "robust", never noticeably worse than the mean; "least_squares", for many samples per term, and for
             Sobol points; "leave_one_out" and "k_fold", exactly unbiased; "gradient_descent"; "incremental".
         basis: "legendre", "step", "sine" or "gaussian".
@@ -131,6 +131,7 @@ def image_estimate(
     known_integrals: Any = None,
     order: int = 2,
     estimator: ImageEstimator = "robust",
+    basis: Basis = "legendre",
     dims: int | None = None,
     slices: int = 1,
     edges: int = 0,
@@ -150,7 +151,7 @@ def image_estimate(
             values are proportional to, an albedo say.
         known: of f's shape: what each sample would be with nothing in the way; not for "k_fold".
         known_integrals: of `factors`' shape, at least 0: the exact integrals of that.
-        order, estimator, dims, slices, channels: as for `estimate`; "robust", "leave_one_out" or "k_fold".
+        order, estimator, basis, dims, slices, channels: as for `estimate`; "robust", "leave_one_out" or "k_fold".
         edges: where two coordinates that pick a point of a light begin, counted from 1; 0: nowhere. With 4 and more
             samples fits then follow shadows' edges in them. "robust" and "k_fold" use it.
         stratified: whether each pixel's points are, `Sampler`'s say.
@@ -174,7 +175,7 @@ def image_estimate(
     _arrays.one_of("estimator", estimator, dict.fromkeys(get_args(ImageEstimator)))
     if known is not None and estimator == "k_fold":
         raise ValueError("known is given, and estimator is 'k_fold': with known it must be 'robust' or 'leave_one_out'")
-    config = configure(order, estimator, "legendre", d, dims, slices, stratified, *own)
+    config = configure(order, estimator, basis, d, dims, slices, stratified, *own)
     config.edges = _arrays.integer("edges", edges, 0, max(0, config.dims - 1 - (config.slices > 1)))
     image = _c.Image(width=pixels[-1], height=pixels[-2], frames=pixels[0] if len(pixels) == 3 else 1)
     window = image.window = _arrays.integer("window", window, 1, 32)

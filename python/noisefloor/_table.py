@@ -252,9 +252,11 @@ class Table:
         items = int.from_bytes(saved[12:16].tobytes(), "little") if saved[:8].tobytes() == b"nf_table" else 0
         if items not in (0, self._n):
             raise ValueError(f"the state has {items} items, this table {self._n}")
-        rng = [_arrays.integer("rng", number, 0, 2**64 - 1) for number in rng]
-        if len(rng) != 2:
-            raise ValueError(f"rng is {rng}: it must be two integers")
+        try:
+            state, increment = rng
+        except (TypeError, ValueError):
+            raise ValueError(f"rng is {rng!r}: it must be two integers") from None
+        rng = [_arrays.integer("rng", number, 0, 2**64 - 1) for number in (state, increment)]
         with self._lock:
             status = _c.table_load(self._at, _c.data(self._memory), self._memory.nbytes, _c.data(saved), saved.nbytes)
             if status:

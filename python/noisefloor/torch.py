@@ -447,7 +447,7 @@ def cross_entropy_importance(logits: torch.Tensor, target: torch.Tensor) -> torc
     """The norm of the cross-entropy loss's derivative by the logits, || softmax - onehot ||, without a backward pass.
 
     Args:
-        logits: shape (batch, classes).
+        logits: shape (batch, classes), finite: of others the norm is NaN.
         target: integers of shape (batch,), 0 to classes - 1.
 
     Returns:

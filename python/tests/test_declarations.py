@@ -4,11 +4,12 @@ import pathlib
 import re
 import shutil
 import subprocess
+from typing import get_args
 
 import pytest
 
 import noisefloor
-from noisefloor import _c
+from noisefloor import _c, _estimate
 from noisefloor.__main__ import PLACES
 
 COMPILER = shutil.which("cc")
@@ -55,6 +56,11 @@ def test_others_are_refused(right, wrong, tmp_path):
     source = declarations()
     assert right in source
     assert compile_c(source.replace(right, wrong), tmp_path).returncode != 0
+
+
+def test_choices_are_the_librarys():
+    assert get_args(_estimate.Basis) == tuple(_c.BASES)
+    assert sorted(get_args(_estimate.Estimator)) == sorted(_c.ESTIMATORS)
 
 
 def test_every_function_is_used():

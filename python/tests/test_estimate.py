@@ -215,6 +215,8 @@ def test_images_of_channels_frames_surfaces_and_factors():
     apart = numpy.arange(24 * 24, dtype=numpy.int16).reshape(24, 24)
     alone = noisefloor.image_estimate(u[..., :1, :], f[..., :1, :], channels=True, surfaces=apart)
     assert numpy.array_equal(alone.mean, f[..., 0, :].astype(numpy.float32))
+    steps = noisefloor.image_estimate(u, f, channels=True, basis="step")
+    assert steps.mean.shape == plain.mean.shape and not numpy.array_equal(steps.mean, plain.mean)
     albedo = samples(24, 24) + 0.1
     textured = noisefloor.image_estimate(u, f[..., 0] * albedo[..., None], factors=albedo)
     assert numpy.allclose(textured.mean / albedo, noisefloor.image_estimate(u, f[..., 0]).mean, rtol=1e-3)

@@ -222,7 +222,9 @@ def test_arrays_of_anybody():
             lambda t: t.load_state_dict({"table": numpy.zeros(300, numpy.uint8), "rng": (0, 0)}),
             "300 bytes: the bytes are not",
         ),
-        (lambda t: t.load_state_dict({**t.state_dict(), "rng": (1,)}), r"rng is \[1\]: it must be two integers"),
+        (lambda t: t.load_state_dict(None), "the state is a NoneType: what state_dict"),
+        (lambda t: t.load_state_dict({**t.state_dict(), "rng": (1,)}), r"rng is \(1,\): it must be two integers"),
+        (lambda t: t.load_state_dict({**t.state_dict(), "rng": 5}), "rng is 5: it must be two integers"),
         (
             lambda t: t.load_state_dict({**t.state_dict(), "table": t.state_dict()["table"].astype(numpy.int16)}),
             "table holds int16: uint8 is expected",

@@ -17,6 +17,34 @@ static void terms(void)
     CHECK(nf_cv_terms(NULL) == 0);
 }
 
+/* The values of a field count up from 0, as the words say, and each is a choice. */
+#define CHOICES(field, ...)                                                    \
+    do {                                                                       \
+        const uint32_t values[] = {__VA_ARGS__};                               \
+        const uint32_t count = sizeof values / sizeof values[0];               \
+        nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);              \
+        char words[32];                                                        \
+        for (config.field = 0; config.field < count; ++config.field) {         \
+            const char *found = nf_check(NF_CHECK_CV_CONFIG, &config);         \
+            CHECK(values[config.field] == config.field);                       \
+            CHECK(!found || !strstr(found, #field " must be one of"));         \
+        }                                                                      \
+        snprintf(words, sizeof words, ", 0 %s %u", count > 2 ? "to" : "or", count - 1u); \
+        CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, words);                       \
+        CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, #field " must be one of");    \
+    } while (0)
+
+static void choices(void)
+{
+    CHOICES(estimator, NF_CV_ROBUST, NF_CV_LEAST_SQUARES, NF_CV_LEAVE_ONE_OUT, NF_CV_K_FOLD,
+            NF_CV_GRADIENT_DESCENT, NF_CV_INCREMENTAL);
+    CHOICES(basis, NF_BASIS_LEGENDRE, NF_BASIS_STEP, NF_BASIS_SINE, NF_BASIS_GAUSSIAN);
+    CHOICES(solver, NF_SOLVER_AUTO, NF_SOLVER_NORMAL_EQUATIONS, NF_SOLVER_SQUARE_ROOT, NF_SOLVER_DUAL);
+    CHOICES(precision, NF_PRECISION_F64, NF_PRECISION_F32);
+    CHOICES(nonfinite, NF_NONFINITE_ERROR, NF_NONFINITE_SKIP);
+    CHOICES(color, NF_COLOR_PER_CHANNEL, NF_COLOR_LUMINANCE_RATIO);
+}
+
 /* What is wrong is named; a configuration of which nothing is said is taken. */
 static void checked(void)
 {
@@ -185,6 +213,7 @@ int main(void)
     fill_uniform(u, N * 20, 1);
     fill_linear(f, u, N, 2, 1);
     terms();
+    choices();
     checked();
     ranges();
     return report("config");

@@ -1,6 +1,7 @@
 //! Shared fits of an image against their definition: pixel by pixel the ridge fit to the other pixels' samples.
 
 use crate::cv_support::{design, points, smooth, wide};
+use noisefloor::basis::Family;
 use noisefloor::control_variate::{Config, Estimate, Estimator, Image, Ridge, Samples};
 use noisefloor_tests::oracle::{Design, Regression, pixels};
 use noisefloor_tests::random::SplitMix64;
@@ -223,6 +224,17 @@ fn one_fit() {
                     Case::new(fixed, shape, n, &mut rng).check("ridge .05");
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn bases() {
+    let mut rng = SplitMix64::new(6);
+    for basis in Family::ALL {
+        for n in [1, 2, 5] {
+            let config = Config { basis, estimator: Estimator::LeaveOneOut, ..Config::new(2, 2, 1) };
+            Case::new(config, [5, 4, 1], n, &mut rng).check(&format!("{basis:?}"));
         }
     }
 }

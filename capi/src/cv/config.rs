@@ -24,7 +24,7 @@ pub const NF_CV_INCREMENTAL: u32 = 5;
 pub const NF_BASIS_LEGENDRE: u32 = 0;
 /// Basis: products of Walsh functions, constant on the cells of a grid of eighths.
 pub const NF_BASIS_STEP: u32 = 1;
-/// Basis: products of half-waves sin(pi d x + pi/2).
+/// Basis: products of half-waves sin(pi d x + pi/2), which are cos(pi d x).
 pub const NF_BASIS_SINE: u32 = 2;
 /// Basis: isotropic Gaussians, as many as Legendre has terms.
 pub const NF_BASIS_GAUSSIAN: u32 = 3;

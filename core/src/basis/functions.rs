@@ -12,7 +12,7 @@ pub enum Family {
     Legendre,
     /// Walsh functions: piecewise constant on eighths.
     Step,
-    /// Half-waves sin(pi d x + pi/2).
+    /// Half-waves sin(pi d x + pi/2), which are cos(pi d x).
     Sine,
     /// Isotropic Gaussians.
     Gaussian,

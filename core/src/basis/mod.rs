@@ -6,8 +6,8 @@
 //! - [`Family::Legendre`]: products of orthonormal shifted Legendre polynomials, of total degree 1 to `order`.
 //!   Monomials span the same space but at (dims, order) = (3, 7) their normal equations have condition 5e10; these 2.
 //! - [`Family::Step`]: the same products of Walsh functions in sequency order, constant on the cells of an 8-cell grid.
-//! - [`Family::Sine`]: the same products of sin(pi d x + pi/2), d half-waves with an antinode at each border.
-//!   The phase makes them orthonormal with integral zero, and able to follow a trend from border to border.
+//! - [`Family::Sine`]: the same products of sin(pi d x + pi/2) = cos(pi d x), d half-waves with an antinode at each
+//!   border. The phase makes them orthonormal with integral zero, and able to follow a trend from border to border.
 //! - [`Family::Gaussian`]: as many isotropic Gaussians as Legendre has terms, their centres on a Kronecker sequence.
 //!   The integral of each is a product of error functions and is subtracted.
 //!

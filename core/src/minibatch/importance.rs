@@ -96,7 +96,7 @@ pub fn squared_error(output: &[f32], target: &[f32]) -> f32 {
     if output.is_empty() || output.len() != target.len() || !square.is_finite() {
         return f32::NAN;
     }
-    2.0 * Real::sqrt(square).min(0.5 * f64::from(f32::MAX)) as f32
+    saturate(2.0 * Real::sqrt(square))
 }
 
 /// How [`nodes`] makes several importances of one derivative.

@@ -4,10 +4,13 @@
 mod basis;
 mod border;
 mod energy;
+mod fields;
 pub mod optimizer;
 mod pixels;
 mod power;
+mod prices;
 pub mod problem;
+pub mod report;
 pub mod sidecar;
 pub mod table;
 mod visit;

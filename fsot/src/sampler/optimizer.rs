@@ -1,17 +1,20 @@
 //! Descent over the pixels of a nested-net tile, some that do not see each other at a time.
 
-use super::basis::{Basis, SPECTRUM, Spectrum};
-use super::border::{BINS, Border, STATE, Shares, around, bin};
+use super::basis::{Basis, SPECTRUM};
+use super::border::{Border, STATE};
 use super::energy::{Energy, Groups, POINTS, Places};
+use super::fields::{Errors, Fields, errors, subtract};
 use super::pixels::{REACH, Weights};
-use super::power::power;
+use super::prices::{Market, Prices};
 use super::problem::{OCTAVES, SamplerProblem};
+use super::report::SamplerReport;
 use super::table::SamplerTable;
-use super::visit::{Offsets, Prices, Rules, Surroundings, places, visit};
+use super::visit::{Offsets, Rules, Surroundings, places, visit};
 use crate::error::Result;
 use crate::memory;
 use crate::random::{shuffle, stream};
 use crate::run::Optimization;
+use noisefloor::rng::Rng;
 use rayon::prelude::*;
 
 /// Visits of every pixel in a step.
@@ -20,15 +23,9 @@ pub const SWEEPS: usize = 16;
 /// Pixels this far apart along an axis do not see each other.
 const APART: usize = 2 * REACH;
 
-/// Changes that are added around all pixels at a time.
-const WAITING: usize = 64;
-
 /// Streams of random numbers that are not those of a pixel.
 const START_STREAM: u64 = u64::MAX;
 const ORDER_STREAM: u64 = u64::MAX - 1;
-
-/// The errors of a pixel's octaves.
-type Errors = [Spectrum; OCTAVES];
 
 /// Optimises a nested-net tile.
 ///
@@ -39,8 +36,6 @@ pub struct SamplerOptimizer {
     problem: SamplerProblem,
     basis: Basis,
     weights: Weights,
-    /// The pixels that one sees, relative to it.
-    neighbours: Vec<(i32, i32)>,
     iteration: u64,
     offsets: Vec<Offsets>,
     border: Border,
@@ -62,25 +57,6 @@ struct Step {
     before: f64,
 }
 
-/// What there is: for each octave, relative to independent samples.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct SamplerReport {
-    /// The energy of pixels alone.
-    pub raw: [f32; OCTAVES],
-    /// The energy of pixels together.
-    pub filtered: [f32; OCTAVES],
-    /// The least and the greatest density of an axis within 1/64 of a border, relative to a uniform one.
-    pub border: [[f32; 2]; OCTAVES],
-}
-
-/// Sums over pixels of a step.
-#[derive(Debug)]
-struct Fields {
-    errors: Vec<Errors>,
-    around: Vec<Errors>,
-    total: Errors,
-}
-
 impl SamplerOptimizer {
     /// Starts from random offsets.
     ///
@@ -89,29 +65,14 @@ impl SamplerOptimizer {
     pub fn new(problem: SamplerProblem) -> Result<SamplerOptimizer> {
         problem.validate()?;
         let pixels = problem.size * problem.size;
-        let weights = Weights::new();
         memory::check((pixels * (2 * size_of::<Errors>() + 2 * size_of::<Offsets>() + size_of::<Places>())) as u64)?;
         let mut rng = stream(problem.seed, 0, START_STREAM);
         let bits = problem.bits;
-        let mut start = || {
-            let mut offsets: Offsets = [[0; POINTS]; 2];
-            for offsets in &mut offsets {
-                for depth in 0..bits {
-                    for group in offsets[..1 << bits].chunks_mut(1 << (bits - depth)) {
-                        let bit = if rng.next_u32() & 1 == 0 { 0 } else { 0x8000 >> depth };
-                        group.iter_mut().for_each(|offset| *offset ^= bit);
-                    }
-                }
-                offsets[..1 << bits].iter_mut().for_each(|offset| *offset ^= rng.next_u32() as u16 & (0xffff >> bits));
-            }
-            offsets
-        };
         let mut optimizer = SamplerOptimizer {
             basis: Basis::new(problem.exponent),
-            neighbours: weights.neighbours(),
-            weights,
+            weights: Weights::new(problem.size),
             iteration: 0,
-            offsets: (0..pixels).map(|_| start()).collect(),
+            offsets: (0..pixels).map(|_| random(bits, &mut rng)).collect(),
             border: Border::new(pixels),
             coordinates: vec![0.0; (pixels << (bits + 1)) + STATE],
             present: None,
@@ -159,58 +120,12 @@ impl SamplerOptimizer {
         self.coordinates.iter_mut().zip(values).for_each(|(to, value)| *to = value);
     }
 
-    /// The errors of a pixel's octaves.
-    fn errors(&self, energy: &Energy, places: &Places) -> Errors {
-        let mut errors = [[0.0; SPECTRUM]; OCTAVES];
-        let mut sum = [0.0; SPECTRUM];
-        let mut point = 0;
-        for &octave in &energy.octaves {
-            while point < 1 << octave {
-                self.basis.add(places[0][point], places[1][point], &mut sum);
-                point += 1;
-            }
-            let share = 1.0 / (1u32 << octave) as f32;
-            errors[octave].iter_mut().zip(&sum).for_each(|(error, sum)| *error = share * sum);
-            errors[octave][0] = 0.0;
-        }
-        errors
+    fn fields(&self, energy: &Energy, all: &[Places]) -> Fields {
+        Fields::new(&self.basis, &self.weights, energy, all)
     }
 
-    /// What pixels' changes add to an octave's errors around one.
-    fn add_around(&self, pixel: usize, changes: &[(usize, Errors)], octave: usize, around: &mut Spectrum) {
-        let size = self.problem.size as i32;
-        let half = size / 2;
-        let (x, y) = (pixel as i32 % size, pixel as i32 / size);
-        for (other, change) in changes {
-            let wrapped = |d: i32| (d + half).rem_euclid(size) - half;
-            let (dx, dy) = (wrapped(x - *other as i32 % size), wrapped(y - *other as i32 / size));
-            if let Some(weights) = self.weights.at(dx, dy) {
-                weights.add(&change[octave], around);
-            }
-        }
-    }
-
-    fn fields(&self, energy: &Energy, places: &[Places]) -> Fields {
-        let errors: Vec<Errors> = places.par_iter().map(|places| self.errors(energy, places)).collect();
-        let size = self.problem.size as i32;
-        let around = (0..places.len()).into_par_iter().map(|pixel| {
-            let (x, y) = (pixel as i32 % size, pixel as i32 / size);
-            let mut around = [[0.0; SPECTRUM]; OCTAVES];
-            for &(dx, dy) in &self.neighbours {
-                let Some(weights) = self.weights.at(dx, dy) else { continue };
-                let other = (y + dy).rem_euclid(size) * size + (x + dx).rem_euclid(size);
-                for &octave in &energy.octaves {
-                    weights.add(&errors[other as usize][octave], &mut around[octave]);
-                }
-            }
-            around
-        });
-        let around = around.collect();
-        let mut total = [[0.0; SPECTRUM]; OCTAVES];
-        for errors in &errors {
-            add(&mut total, errors);
-        }
-        Fields { errors, around, total }
+    fn look(&self, energy: &Energy, fields: &Fields, all: &[Places]) -> SamplerReport {
+        SamplerReport::new(&self.basis, energy, fields, &self.border, all)
     }
 
     fn surroundings(&self, energy: &Energy, fields: &Fields, pixel: usize, prices: Prices) -> Surroundings {
@@ -228,48 +143,8 @@ impl SamplerOptimizer {
         surroundings
     }
 
-    /// What the marginals ask of the points of each first octave.
-    fn prices(&self, energy: &Energy) -> Prices {
-        let mut sum = [[0.0; BINS]; 2];
-        let mut prices = [[[0.0; BINS]; 2]; OCTAVES];
-        for &octave in energy.octaves.iter().rev() {
-            let factor = self.factor(energy, octave);
-            for (axis, sum) in sum.iter_mut().enumerate() {
-                for (bin, sum) in sum.iter_mut().enumerate() {
-                    *sum += factor * self.border.price(octave, axis, bin);
-                }
-            }
-            prices[octave] = sum;
-        }
-        prices
-    }
-
-    /// Prices without what a pixel's own points add to them.
-    fn without(&self, energy: &Energy, prices: &Prices, own: &Places) -> Prices {
-        let mut prices = *prices;
-        let mut sums = [Shares::default(); OCTAVES];
-        let mut sum = Shares::default();
-        for &octave in energy.octaves.iter().rev() {
-            let factor = self.factor(energy, octave);
-            sum.iter_mut().zip(self.border.share(octave)).for_each(|(sum, share)| *sum += factor * share);
-            sums[octave] = sum;
-        }
-        for (axis, places) in own.iter().enumerate() {
-            for (place, first) in places.iter().zip(energy.first).take(energy.points) {
-                // In an octave's prices are those of all longer ones; a point is in its own and these.
-                for (bin, distance) in around(bin(*place), sum.len() - 1) {
-                    for &octave in &energy.octaves {
-                        prices[octave][axis][bin] -= sums[octave.max(first)][distance];
-                    }
-                }
-            }
-        }
-        prices
-    }
-
-    /// What a relative surplus of an octave costs a point.
-    fn factor(&self, energy: &Energy, octave: usize) -> f32 {
-        self.problem.border * self.basis.total * energy.weights[octave] / (1u32 << octave) as f32
+    fn market<'a>(&'a self, energy: &'a Energy) -> Market<'a> {
+        Market { border: &self.border, energy, cost: self.problem.border * self.basis.total }
     }
 
     fn count(&mut self, energy: &Energy, places: &Places, change: i32) {
@@ -298,21 +173,14 @@ impl SamplerOptimizer {
         let mut order: Vec<usize> = (0..APART * APART).collect();
         shuffle(&mut order, &mut stream(self.problem.seed, number, ORDER_STREAM));
         let size = self.problem.size;
-        // Changes that wait to be added around all pixels, and how many of them each pixel has.
-        let mut changes: Vec<(usize, Errors)> = Vec::new();
-        let mut added = vec![0; all.len()];
         for place in order {
             let (row, column) = (place / APART, place % APART);
             let rows = (row..size).step_by(APART);
             let pixels: Vec<usize> =
                 rows.flat_map(|row| (column..size).step_by(APART).map(move |column| row * size + column)).collect();
-            for &pixel in &pixels {
-                for &octave in &energy.octaves {
-                    self.add_around(pixel, &changes[added[pixel]..], octave, &mut fields.around[pixel][octave]);
-                }
-                added[pixel] = changes.len();
-            }
-            let prices = self.prices(energy);
+            pixels.iter().for_each(|&pixel| fields.catch_up(&self.weights, energy, pixel));
+            let market = self.market(energy);
+            let prices = market.prices();
             let look = |pixel: &usize| {
                 let rules = Rules {
                     basis: &self.basis,
@@ -322,13 +190,13 @@ impl SamplerOptimizer {
                     temperature,
                     candidates: self.problem.candidates,
                 };
-                let prices = self.without(energy, &prices, &all[*pixel]);
+                let prices = market.without(&prices, &all[*pixel]);
                 let around = self.surroundings(energy, fields, *pixel, prices);
                 let mut rng = stream(self.problem.seed, number, *pixel as u64);
                 let before = (self.offsets[*pixel], all[*pixel]);
                 let (offsets, places, changed) = visit(&rules, &around, *pixel as u32, before, &mut rng);
                 changed.then(|| {
-                    let mut change = self.errors(energy, &places);
+                    let mut change = errors(&self.basis, energy, &places);
                     subtract(&mut change, &fields.errors[*pixel]);
                     (offsets, places, change)
                 })
@@ -340,71 +208,28 @@ impl SamplerOptimizer {
                 self.count(energy, &old, -1);
                 self.count(energy, &places, 1);
                 self.offsets[pixel] = offsets;
-                add(&mut fields.errors[pixel], &change);
-                add(&mut fields.total, &change);
-                changes.push((pixel, change));
+                fields.change(pixel, change);
             }
-            if changes.len() >= WAITING {
-                self.add_all(&mut changes, &mut added, energy, fields);
-            }
+            fields.spread_many(&self.weights, energy);
         }
-        self.add_all(&mut changes, &mut added, energy, fields);
+        fields.spread(&self.weights, energy);
         self.border.remember(&energy.octaves);
     }
-
-    /// Adds the changes that wait around all pixels: an octave at a time, whose changes a processor's cache holds.
-    fn add_all(&self, changes: &mut Vec<(usize, Errors)>, added: &mut [usize], energy: &Energy, fields: &mut Fields) {
-        for &octave in &energy.octaves {
-            let around = fields.around.par_iter_mut().zip(&*added).enumerate().with_min_len(64);
-            around.for_each(|(pixel, (around, added))| {
-                self.add_around(pixel, &changes[*added..], octave, &mut around[octave]);
-            });
-        }
-        changes.clear();
-        added.fill(0);
-    }
-
-    /// What there is at the beginning of a step.
-    fn look(&self, energy: &Energy, fields: &Fields, all: &[Places]) -> SamplerReport {
-        let mut report = SamplerReport::default();
-        for &octave in &energy.octaves {
-            let count = 1usize << octave;
-            let own = |places: &Places| {
-                let at = |axis: usize, i: usize| (f32::from(places[axis][i]) + 0.5) / 65536.0;
-                let (mut alone, mut apart) = (0.0, 0.0);
-                for i in 0..count {
-                    alone += self.basis.mean_at(at(0, i), at(1, i));
-                    for j in 0..i {
-                        let (dx, dy) = (at(0, i) - at(0, j), at(1, i) - at(1, j));
-                        apart += 2.0 * power(dx * dx + dy * dy, self.basis.half);
-                    }
-                }
-                let share = 1.0 / count as f32;
-                2.0 * share * alone - share * share * apart - self.basis.total
-            };
-            let owns: Vec<f32> = all.par_iter().map(own).collect();
-            let raw = owns.iter().map(|own| f64::from(*own)).sum::<f64>() / all.len() as f64;
-            let cross = |pixel: usize| -> f64 {
-                let (own, around) = (&fields.errors[pixel][octave], &fields.around[pixel][octave]);
-                let terms = own.iter().zip(around).zip(&self.basis.energies);
-                terms.map(|((own, around), energy)| f64::from(own * around * energy)).sum()
-            };
-            let together = raw + (0..all.len()).map(cross).sum::<f64>() / all.len() as f64;
-            let white = f64::from(self.basis.total) / count as f64;
-            report.raw[octave] = (raw / white) as f32;
-            report.filtered[octave] = (together / white) as f32;
-            report.border[octave] = self.border.extremes(octave);
-        }
-        report
-    }
 }
 
-fn add(sum: &mut Errors, errors: &Errors) {
-    sum.iter_mut().flatten().zip(errors.iter().flatten()).for_each(|(sum, error)| *sum += error);
-}
-
-fn subtract(sum: &mut Errors, errors: &Errors) {
-    sum.iter_mut().flatten().zip(errors.iter().flatten()).for_each(|(sum, error)| *sum -= error);
+/// Random offsets of nets' points.
+fn random(bits: u32, rng: &mut Rng) -> Offsets {
+    let mut offsets: Offsets = [[0; POINTS]; 2];
+    for offsets in &mut offsets {
+        for depth in 0..bits {
+            for group in offsets[..1 << bits].chunks_mut(1 << (bits - depth)) {
+                let bit = if rng.next_u32() & 1 == 0 { 0 } else { 0x8000 >> depth };
+                group.iter_mut().for_each(|offset| *offset ^= bit);
+            }
+        }
+        offsets[..1 << bits].iter_mut().for_each(|offset| *offset ^= rng.next_u32() as u16 & (0xffff >> bits));
+    }
+    offsets
 }
 
 impl Optimization for SamplerOptimizer {
@@ -472,6 +297,7 @@ impl Optimization for SamplerOptimizer {
 
 #[cfg(test)]
 mod tests {
+    use super::super::border::BINS;
     use super::*;
 
     fn near(a: &[f32], b: &[f32], tolerance: f32) -> bool {
@@ -520,11 +346,12 @@ mod tests {
         let all = optimizer.survey(&energy, &groups);
         let fields = optimizer.fields(&energy, &all);
         let pixel = 3 * 32 + 1;
-        let prices = optimizer.without(&energy, &optimizer.prices(&energy), &all[pixel]);
+        let market = optimizer.market(&energy);
+        let prices = market.without(&market.prices(), &all[pixel]);
         let around = optimizer.surroundings(&energy, &fields, pixel, prices);
 
         optimizer.count(&energy, &all[pixel], -1);
-        let anew = optimizer.prices(&energy);
+        let anew = optimizer.market(&energy).prices();
         let mut asked = [0.0; SPECTRUM];
         for &octave in energy.octaves.iter().rev() {
             for axis in 0..2 {
@@ -532,10 +359,8 @@ mod tests {
                 assert!(near(&prices[octave][axis], &anew[octave][axis], 1e-4 * largest));
             }
             for (other, errors) in fields.errors.iter().enumerate().filter(|(other, _)| *other != pixel) {
-                let wrapped = |d: i32| (d + 16).rem_euclid(32) - 16;
-                let (dx, dy) = (wrapped(other as i32 % 32 - 1), wrapped(other as i32 / 32 - 3));
                 let mut seen = errors[octave].map(|error| optimizer.problem.mean * error);
-                if let Some(weight) = optimizer.weights.at(dx, dy) {
+                if let Some(weight) = optimizer.weights.between(pixel, other) {
                     weight.add(&errors[octave], &mut seen);
                 }
                 let factor = 2.0 * energy.weights[octave] / (1 << octave) as f32;

@@ -18,6 +18,8 @@ const FAINT: f64 = 0.02;
 pub(crate) struct Weights {
     /// `[distance along y][along x]`; none if too little.
     weights: Vec<Option<Box<Weight>>>,
+    /// Pixels along each side of the torus.
+    size: i32,
 }
 
 /// What two pixels count together.
@@ -42,7 +44,8 @@ impl Weight {
 }
 
 impl Weights {
-    pub(crate) fn new() -> Weights {
+    /// For a torus of size x size pixels.
+    pub(crate) fn new(size: usize) -> Weights {
         let weights = (0..SIDE * SIDE).map(|place| {
             let square = ((place / SIDE).pow(2) + (place % SIDE).pow(2)) as f64;
             let filter = |sigma: f64| libm::exp(-square / (4.0 * sigma * sigma));
@@ -52,11 +55,11 @@ impl Weights {
             let modes = (0..MODES).take_while(|&mode| weight(mode) > FAINT).count().next_multiple_of(LANES);
             seen.then(|| Box::new(Weight { modes, factors: std::array::from_fn(|mode| weight(mode) as f32) }))
         });
-        Weights { weights: weights.collect() }
+        Weights { weights: weights.collect(), size: size as i32 }
     }
 
     /// None if two pixels so far apart do not see each other, or are one.
-    pub(crate) fn at(&self, x: i32, y: i32) -> Option<&Weight> {
+    fn at(&self, x: i32, y: i32) -> Option<&Weight> {
         let (x, y) = (x.unsigned_abs() as usize, y.unsigned_abs() as usize);
         if x > REACH || y > REACH {
             return None;
@@ -64,11 +67,27 @@ impl Weights {
         self.weights[y * SIDE + x].as_deref()
     }
 
-    /// The pixels that one sees, relative to it.
-    pub(crate) fn neighbours(&self) -> Vec<(i32, i32)> {
-        let reach = REACH as i32;
-        let all = (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| (x, y)));
-        all.filter(|(x, y)| self.at(*x, *y).is_some()).collect()
+    fn column_and_row(&self, pixel: usize) -> (i32, i32) {
+        (pixel as i32 % self.size, pixel as i32 / self.size)
+    }
+
+    /// What two pixels of the torus count together; none if they do not see each other, or are one.
+    pub(crate) fn between(&self, pixel: usize, other: usize) -> Option<&Weight> {
+        let ((x, y), (other_x, other_y)) = (self.column_and_row(pixel), self.column_and_row(other));
+        let half = self.size / 2;
+        let wrapped = |d: i32| (d + half).rem_euclid(self.size) - half;
+        self.at(wrapped(x - other_x), wrapped(y - other_y))
+    }
+
+    /// The pixels that one sees, and what each counts with it.
+    pub(crate) fn around(&self, pixel: usize) -> impl Iterator<Item = (usize, &Weight)> {
+        let (x, y) = self.column_and_row(pixel);
+        let (size, reach) = (self.size, REACH as i32);
+        let all = (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| (dx, dy)));
+        all.filter_map(move |(dx, dy)| {
+            let other = (y + dy).rem_euclid(size) * size + (x + dx).rem_euclid(size);
+            self.at(dx, dy).map(|weight| (other as usize, weight))
+        })
     }
 }
 

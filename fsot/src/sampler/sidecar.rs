@@ -1,7 +1,7 @@
 //! The file `NAME.toml` beside a sampler's table `NAME.bin`: what it is, how it was made and how good it is.
 
-use super::optimizer::SamplerReport;
 use super::problem::SamplerProblem;
+use super::report::SamplerReport;
 use super::table::SamplerTable;
 use crate::digest::digest;
 use crate::error::{Error, Result};

@@ -5,6 +5,7 @@ use super::basis::{Basis, Spectrum};
 use super::border::{BINS, bin};
 use super::energy::{Energy, Groups, POINTS, Places};
 use super::power::{LANES, sum, terms};
+use super::prices::Prices;
 use super::problem::OCTAVES;
 use super::table::{OFFSET_BITS, fine};
 use noisefloor::rng::Rng;
@@ -17,9 +18,6 @@ pub(crate) struct Surroundings {
     pub(crate) fields: [Spectrum; OCTAVES],
     pub(crate) prices: Prices,
 }
-
-/// What the marginals ask: `[octave][axis][bin]`.
-pub(crate) type Prices = [[[f32; BINS]; 2]; OCTAVES];
 
 /// Shared by all visits of a step.
 pub(crate) struct Rules<'a> {
