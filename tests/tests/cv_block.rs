@@ -129,11 +129,11 @@ fn errors() {
     };
     let (u, f) = ([0.5; 6], [1.0; 6]);
     let len = image_workspace_len(&config, &Image::unordered(3), 2).unwrap();
-    assert_eq!(run(&config, &u, &f, 4, 1000), Err(Error::Range));
-    assert_eq!(run(&config, &u, &f, 7, 1000), Err(Error::Range));
+    assert_eq!(run(&config, &u, &f, 4, 1000), Err(Error::Length));
+    assert_eq!(run(&config, &u, &f, 7, 1000), Err(Error::Length));
     assert_eq!(run(&config, &u, &f, 0, 1000), Err(Error::Range));
     assert_eq!(run(&config, &[], &[], 3, 1000), Err(Error::NoSamples));
-    assert_eq!(run(&config, &u[..5], &f, 3, 1000), Err(Error::Range));
+    assert_eq!(run(&config, &u[..5], &f, 3, 1000), Err(Error::Length));
     assert_eq!(run(&config, &u, &f, 3, len - 1), Err(Error::Memory));
     let skip = Config { non_finite: NonFinite::Skip, ..config };
     assert_eq!(run(&skip, &u, &f, 3, 1000), Err(Error::Unsupported));

@@ -536,12 +536,12 @@ fn control_functions_must_match() {
         assert_eq!(run(&config, &u, &h, &integrals), Ok(12));
         let longer = [&h[..], &[0.5]].concat();
         for h in [&[], &h[..23], &h[..12], &longer] {
-            assert_eq!(run(&config, &u, h, &integrals), Err(Error::Range), "{}", h.len());
+            assert_eq!(run(&config, &u, h, &integrals), Err(Error::Length), "{}", h.len());
         }
         for integrals in [&[][..], &[0.5], &[0.5; 3]] {
-            assert_eq!(run(&config, &u, &h, integrals), Err(Error::Range));
+            assert_eq!(run(&config, &u, &h, integrals), Err(Error::Length));
         }
-        assert_eq!(run(&config, &[&u[..], &[0.5]].concat(), &h, &integrals), Err(Error::Range));
+        assert_eq!(run(&config, &[&u[..], &[0.5]].concat(), &h, &integrals), Err(Error::Length));
         let skip = Config { non_finite: NonFinite::Skip, ..config };
         for bad in [f32::NAN, f32::INFINITY] {
             assert_eq!(run(&config, &u, &h, &[0.5, bad]), Err(Error::NotFinite));

@@ -397,13 +397,13 @@ fn errors() {
     assert_eq!(run(&config, of, &u, &f, len - 1), Err(Error::Memory));
     assert_eq!(run(&config, Image::new(0, 2), &u, &f, 9999), Err(Error::Range));
     assert_eq!(run(&config, Image::new(3, 0), &u, &f, 9999), Err(Error::Range));
-    assert_eq!(run(&config, Image::new(5, 2), &u, &f, 9999), Err(Error::Range));
+    assert_eq!(run(&config, Image::new(5, 2), &u, &f, 9999), Err(Error::Length));
     assert_eq!(run(&config, Image { window: 2, stride: 3, ..of }, &u, &f, 9999), Err(Error::Range));
     assert_eq!(run(&config, of, &[], &[], 9999), Err(Error::NoSamples));
-    assert_eq!(run(&config, of, &u[..23], &f, 9999), Err(Error::Range));
+    assert_eq!(run(&config, of, &u[..23], &f, 9999), Err(Error::Length));
     for len in [1, 5, 7] {
-        assert_eq!(run(&config, Image { surfaces: &vec![0; len], ..of }, &u, &f, 9999), Err(Error::Range));
-        assert_eq!(run(&config, Image { factors: &vec![1.0; len], ..of }, &u, &f, 9999), Err(Error::Range));
+        assert_eq!(run(&config, Image { surfaces: &vec![0; len], ..of }, &u, &f, 9999), Err(Error::Length));
+        assert_eq!(run(&config, Image { factors: &vec![1.0; len], ..of }, &u, &f, 9999), Err(Error::Length));
     }
     for (bad, error) in [
         (-1.0, Error::Range),

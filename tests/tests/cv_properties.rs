@@ -542,7 +542,7 @@ proptest! {
                     f[n - 1] = 1.0;
                     u[n * dims - 1] = 1.5;
                     prop_assert_eq!(subject.add(Samples::new(&u, &f)), Err(Error::Range));
-                    prop_assert_eq!(subject.add(Samples::new(&u[..n * dims - 1], &f)), Err(Error::Range));
+                    prop_assert_eq!(subject.add(Samples::new(&u[..n * dims - 1], &f)), Err(Error::Length));
                     prop_assert_eq!(subject.add(Samples::new(&[], &[])), Err(Error::NoSamples));
                     prop_assert_eq!(finish(&subject), before);
                 }

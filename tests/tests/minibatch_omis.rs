@@ -412,8 +412,8 @@ fn batches_refuse() {
     refuse(1, 0, &[], &technique, Error::Range);
     refuse(1, 17, &[0.5; 34], &technique, Error::Range);
     refuse(1, usize::MAX, &pdf, &technique, Error::Range);
-    refuse(1, 2, &pdf[..3], &technique, Error::Range);
-    refuse(1, 2, &pdf, &technique[..1], Error::Range);
+    refuse(1, 2, &pdf[..3], &technique, Error::Length);
+    refuse(1, 2, &pdf, &technique[..1], Error::Length);
     refuse(1, 2, &[], &[], Error::NoSamples);
     for (bad, error) in [
         (f32::NAN, Error::NotFinite),
@@ -450,7 +450,7 @@ fn estimates_refuse() {
         (Solver::Ridge(f32::NAN), Error::NotFinite),
     ];
     let mut weight = [7.0; 3];
-    assert_eq!(weights(&batch, RIDGE, &mut weight), Err(Error::Range));
+    assert_eq!(weights(&batch, RIDGE, &mut weight), Err(Error::Length));
     for (solver, error) in bad_solvers {
         assert_eq!(weights(&batch, solver, &mut weight[..2]), Err(error));
     }
@@ -486,7 +486,7 @@ fn estimates_refuse() {
     {
         refuse(&batch, RIDGE, beta, &gradients, error);
     }
-    refuse(&batch, RIDGE, 0.5, &gradients[..5], Error::Range);
+    refuse(&batch, RIDGE, 0.5, &gradients[..5], Error::Length);
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for k in 0..6 {
             let mut gradients = gradients;
@@ -495,7 +495,7 @@ fn estimates_refuse() {
         }
     }
     let one = Batch::new(10, 1, &pdf[..2], &technique[..1]);
-    assert_eq!(one.unwrap_err(), Error::Range);
+    assert_eq!(one.unwrap_err(), Error::Length);
     let one = Batch::new(10, 1, &pdf[..2], &[0, 0]).unwrap();
     refuse(&one, RIDGE, 0.5, &gradients, Error::Range);
     // Sums beyond the range of f32.
@@ -503,7 +503,7 @@ fn estimates_refuse() {
     refuse(&tiny, RIDGE, 0.5, &[1e10; 6], Error::Range);
     let denormal = Batch::new(1, 2, &[1e-45, 0.0, 0.0, 1e-45], &technique).unwrap();
     refuse(&denormal, RIDGE, 0.5, &[0.0; 6], Error::Range);
-    assert_eq!(state.estimate(&batch, RIDGE, 0.5, &gradients, &mut [0.0; 2]), Err(Error::Range));
+    assert_eq!(state.estimate(&batch, RIDGE, 0.5, &gradients, &mut [0.0; 2]), Err(Error::Length));
     assert_eq!((state, estimate), before);
 }
 

@@ -148,7 +148,7 @@ fn errors() {
         assert_eq!(heuristic(&[], &[], 0), Err(Error::Range));
         assert_eq!(heuristic(&[1.0; 17], &[1; 17], 0), Err(Error::Range));
         assert!(heuristic(&[1.0; 16], &[1; 16], 15).is_ok());
-        assert_eq!(heuristic(&[1.0; 2], &[1; 3], 0), Err(Error::Range));
+        assert_eq!(heuristic(&[1.0; 2], &[1; 3], 0), Err(Error::Length));
         assert_eq!(heuristic(&[1.0; 2], &[1; 2], 2), Err(Error::Range));
         assert_eq!(heuristic(&[1.0; 2], &[1; 2], usize::MAX), Err(Error::Range));
         assert_eq!(heuristic(&[1.0, -1e-30], &[1; 2], 0), Err(Error::Range));

@@ -479,10 +479,10 @@ fn errors_of_samples_leave_the_sums() {
         assert_eq!(omis, before);
         result
     };
-    let range = Err(Error::Range);
-    assert_eq!(add(0, &[1.0], &[1.0, 1.0]), range);
-    assert_eq!(add(0, &[1.0; 3], &[1.0, 1.0]), range);
-    assert_eq!(add(0, &[1.0; 2], &[1.0]), range);
+    let (range, length) = (Err(Error::Range), Err(Error::Length));
+    assert_eq!(add(0, &[1.0], &[1.0, 1.0]), length);
+    assert_eq!(add(0, &[1.0; 3], &[1.0, 1.0]), length);
+    assert_eq!(add(0, &[1.0; 2], &[1.0]), length);
     assert_eq!(add(2, &[1.0; 2], &[1.0; 2]), range);
     assert_eq!(add(0, &[0.0, 1.0], &[1.0; 2]), range);
     assert_eq!(add(0, &[1.0, -1.0], &[1.0; 2]), range);
@@ -503,9 +503,9 @@ fn errors_of_solving_leave_the_output() {
     }
     assert_eq!(omis.next_batch(Solver::Plain), Err(Error::NoSamples));
     omis.add(0, &[1.0, 2.0], &[1.0, 0.0]).unwrap();
-    assert_eq!(omis.solve(Solver::Plain, &mut [0.0; 1]), Err(Error::Range));
-    assert_eq!(omis.solve(Solver::Plain, &mut [0.0; 3]), Err(Error::Range));
-    assert_eq!(omis.alpha(Solver::Plain, &mut [0.0; 2]), Err(Error::Range));
+    assert_eq!(omis.solve(Solver::Plain, &mut [0.0; 1]), Err(Error::Length));
+    assert_eq!(omis.solve(Solver::Plain, &mut [0.0; 3]), Err(Error::Length));
+    assert_eq!(omis.alpha(Solver::Plain, &mut [0.0; 2]), Err(Error::Length));
     assert_eq!(omis.next_batch(Solver::Progressive), Err(Error::Unsupported));
     for (ridge, error) in [
         (0.0, Error::Range),

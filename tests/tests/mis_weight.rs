@@ -67,8 +67,8 @@ fn errors() {
     let range = Err(Error::Range);
     assert_eq!(w(&[], &[], 0, &[], 1.0), range);
     assert_eq!(w(&[1.0; 17], &[1; 17], 0, &[0.0; 17], 1.0), range);
-    assert_eq!(w(&[1.0; 2], &[1; 1], 0, &[0.0; 2], 1.0), range);
-    assert_eq!(w(&[1.0; 2], &[1; 2], 0, &[0.0; 3], 1.0), range);
+    assert_eq!(w(&[1.0; 2], &[1; 1], 0, &[0.0; 2], 1.0), Err(Error::Length));
+    assert_eq!(w(&[1.0; 2], &[1; 2], 0, &[0.0; 3], 1.0), Err(Error::Length));
     assert_eq!(w(&[1.0; 2], &[1; 2], 2, &[0.0; 2], 1.0), range);
     assert_eq!(w(&[1.0, -1.0], &[1; 2], 0, &[0.0; 2], 1.0), range);
     assert_eq!(w(&[1.0; 2], &[1, 0], 0, &[0.0; 2], 1.0), range);

@@ -51,8 +51,9 @@ fn size(config: &Config, plan: &Plan, n: usize) -> Option<usize> {
 /// matter and must not be relied on.
 ///
 /// # Errors
-/// - [`Error::Range`]: a field of `config`, a coordinate outside [0, 1], array lengths that do not belong together, or
-///   more samples than `u32::MAX`, in `f32` 2^25 (2^22 where they are [added one by one](Accumulator::add)).
+/// - [`Error::Range`]: a field of `config`, a coordinate outside [0, 1], or more samples than `u32::MAX`, in `f32` 2^25
+///   (2^22 where they are [added one by one](Accumulator::add)).
+/// - [`Error::Length`]: arrays' lengths do not belong together.
 /// - [`Error::NotFinite`]: a NaN or infinity among the control functions' integrals, or among the samples, unless
 ///   `config` says to skip them.
 /// - [`Error::NoSamples`]: no samples, or none left.

@@ -63,7 +63,8 @@ pub(crate) struct Sample<'a> {
 
 impl<'a> Reader<'a> {
     /// # Errors
-    /// [`Error::Range`] if the arrays' lengths do not belong together, [`Error::NoSamples`] if they are empty.
+    /// [`Error::Length`] if the arrays' lengths do not belong together, [`Error::NoSamples`] if they are empty,
+    /// [`Error::Range`] if there are more than 32 bits count.
     pub(crate) fn new(config: &Config, samples: Samples<'a>) -> Result<Self, Error> {
         let n = samples.f.len().checked_div(config.channels).unwrap_or(0);
         ensure(n > 0 || !samples.f.is_empty(), Error::NoSamples)?;
@@ -75,7 +76,8 @@ impl<'a> Reader<'a> {
             && samples.u.len() <= n.saturating_mul(stride)
             && samples.controls.len() == n.saturating_mul(config.controls)
             && samples.control_integrals.len() == config.controls;
-        ensure(lengths_fit && u32::try_from(n).is_ok(), Error::Range)?;
+        ensure(lengths_fit, Error::Length)?;
+        ensure(u32::try_from(n).is_ok(), Error::Range)?;
         ensure(samples.control_integrals.iter().all(|value| value.is_finite()), Error::NotFinite)?;
         Ok(Self {
             samples,

@@ -30,12 +30,12 @@ impl<'a> Batch<'a> {
     ///   part in the batch, whatever its probabilities.
     ///
     /// # Errors
-    /// [`Error::Range`] for arguments outside these ranges or a wrong length; [`Error::NoSamples`] for an empty
-    /// batch; [`Error::NotFinite`] for a probability that is NaN or infinite.
+    /// [`Error::Range`] for arguments outside these ranges; [`Error::Length`]; [`Error::NoSamples`] for an empty batch;
+    /// [`Error::NotFinite`] for a probability that is NaN or infinite.
     pub fn new(items: u32, techniques: usize, pdf: &'a [f32], technique: &'a [u32]) -> Result<Batch<'a>, Error> {
         ensure((1..=MAX_TECHNIQUES).contains(&techniques) && items > 0, Error::Range)?;
         ensure(!technique.is_empty(), Error::NoSamples)?;
-        ensure(technique.len().checked_mul(techniques) == Some(pdf.len()), Error::Range)?;
+        ensure(technique.len().checked_mul(techniques) == Some(pdf.len()), Error::Length)?;
         ensure(pdf.iter().all(|p| p.is_finite()), Error::NotFinite)?;
         let mut counts = Vector::default();
         for (&own, p) in technique.iter().zip(pdf.chunks_exact(techniques)) {

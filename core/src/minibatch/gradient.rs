@@ -104,7 +104,7 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
     /// `f32` becomes the largest finite one. The gradients are read twice, once to see that they are finite.
     ///
     /// # Errors
-    /// These leave everything as it was: [`Error::Range`] for a wrong length, number of techniques, beta or
+    /// These leave everything as it was: [`Error::Length`]; [`Error::Range`] for a number of techniques, beta or
     /// ridge, or where gradients over probabilities add up beyond a quarter of the range of `f32`; [`Error::NotFinite`]
     /// for NaN or infinity among the gradients, beta or ridge; [`Error::Unsupported`] for [`Solver::Progressive`].
     // Inlined into copies for wider registers.
@@ -118,8 +118,8 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
         estimate: &mut [f32],
     ) -> Result<(), Error> {
         let parameters = self.parameters;
-        ensure(estimate.len() == parameters, Error::Range)?;
-        ensure(batch.len().checked_mul(parameters) == Some(gradient.len()), Error::Range)?;
+        ensure(estimate.len() == parameters, Error::Length)?;
+        ensure(batch.len().checked_mul(parameters) == Some(gradient.len()), Error::Length)?;
         let mut system = self.system;
         let (keep, part) = system.add(batch, beta)?;
         let correction = system.correction(solver)?;

@@ -22,7 +22,7 @@ use crate::real::saturate;
 ///
 /// `weight` has one element per sample; one beyond the range of `f32` becomes the largest finite one.
 ///
-/// Errors, which leave `weight` as it was: [`Error::Range`] for a wrong length, or a ridge outside
+/// Errors, which leave `weight` as it was: [`Error::Length`]; [`Error::Range`] for a ridge outside
 /// [`RIDGE_RANGE`](crate::mis::RIDGE_RANGE); [`Error::NotFinite`] for a ridge that is NaN or infinite;
 /// [`Error::Unsupported`] for [`Solver::Progressive`].
 ///
@@ -37,7 +37,7 @@ use crate::real::saturate;
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
 pub fn weights(batch: &Batch<'_>, solver: Solver, weight: &mut [f32]) -> Result<(), Error> {
-    ensure(weight.len() == batch.len(), Error::Range)?;
+    ensure(weight.len() == batch.len(), Error::Length)?;
     let mut system = System::new(batch.techniques());
     system.add(batch, 0.0)?;
     let correction = system.correction(solver)?;

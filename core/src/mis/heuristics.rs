@@ -20,8 +20,8 @@ pub const DEFAULT_BETA: f32 = 2.0;
 /// The weights of all techniques sum to one. Where every n_k p_k is 0, so that x cannot have been drawn, each is 0.
 ///
 /// # Errors
-/// [`Error::Range`] for slices that are not of one length in 1..=16, a technique that does not exist or a
-/// negative density; [`Error::NotFinite`] for a NaN.
+/// [`Error::Length`] for slices of different lengths; [`Error::Range`] for lengths outside 1..=16, a technique that does
+/// not exist or a negative density; [`Error::NotFinite`] for a NaN.
 ///
 /// ```
 /// // The point is three times as dense under the second technique; one sample of each.
@@ -88,8 +88,8 @@ impl Densities {
     #[inline]
     fn new(pdf: &[f32], counts: &[u32], technique: usize) -> Result<Densities, Error> {
         let techniques = pdf.len();
-        let one_length = (1..=MAX_TECHNIQUES).contains(&techniques) && counts.len() == techniques;
-        ensure(one_length && technique < techniques, Error::Range)?;
+        ensure(counts.len() == techniques, Error::Length)?;
+        ensure((1..=MAX_TECHNIQUES).contains(&techniques) && technique < techniques, Error::Range)?;
         let (mut each, mut is_usual) = ([0.0; MAX_TECHNIQUES], true);
         for (density, (&p, &n)) in each.iter_mut().zip(pdf.iter().zip(counts)) {
             is_usual &= (0.0..=f32::MAX).contains(&p);

@@ -106,10 +106,10 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     /// range of `f32` becomes the largest finite one.
     ///
     /// # Errors
-    /// [`Error::Range`] for a wrong length or a ridge outside [`RIDGE_RANGE`](super::RIDGE_RANGE);
+    /// [`Error::Length`]; [`Error::Range`] for a ridge outside [`RIDGE_RANGE`](super::RIDGE_RANGE);
     /// [`Error::NotFinite`] for a ridge that is NaN or infinite; [`Error::NoSamples`].
     pub fn solve(&self, solver: Solver, estimate: &mut [f32]) -> Result<(), Error> {
-        ensure(estimate.len() == self.integrals, Error::Range)?;
+        ensure(estimate.len() == self.integrals, Error::Length)?;
         let (sums, rounds) = self.sums()?;
         let system = self.system(solver)?;
         for (out, record) in estimate.iter_mut().zip(rows(sums.records, record_len(self.techniques))) {
@@ -133,7 +133,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     /// Used on samples other than the ones it came from, it gives unbiased estimates. [`Solver::Progressive`] stands
     /// for the alpha that the current batch uses, [`Solver::Balance`] for zeros. Errors as for [`OptimalMis::solve`].
     pub fn alpha(&self, solver: Solver, alpha: &mut [f32]) -> Result<(), Error> {
-        ensure(self.integrals.checked_mul(self.techniques) == Some(alpha.len()), Error::Range)?;
+        ensure(self.integrals.checked_mul(self.techniques) == Some(alpha.len()), Error::Length)?;
         let (sums, _) = self.sums()?;
         let system = self.system(solver)?;
         let records = rows(sums.records, record_len(self.techniques)).zip(rows(sums.alphas, self.techniques));
@@ -187,12 +187,12 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// integrand there (not divided by any density).
     ///
     /// # Errors
-    /// These leave the sums as they were: [`Error::Range`] for wrong lengths, a technique that does not exist,
+    /// These leave the sums as they were: [`Error::Length`]; [`Error::Range`] for a technique that does not exist,
     /// a negative density, or a density of 0 for the technique that drew the sample; [`Error::NotFinite`] for NaN or
     /// infinity among the densities (combine delta distributions outside) or values.
     pub fn add(&mut self, technique: usize, pdf: &[f32], value: &[f32]) -> Result<(), Error> {
         let techniques = self.techniques;
-        ensure(pdf.len() == techniques && value.len() == self.integrals, Error::Range)?;
+        ensure(pdf.len() == techniques && value.len() == self.integrals, Error::Length)?;
         let own = *pdf.get(technique).ok_or(Error::Range)?;
         ensure(pdf.iter().chain(value).all(|x| x.is_finite()), Error::NotFinite)?;
         ensure(own > 0.0 && pdf.iter().all(|&p| p >= 0.0), Error::Range)?;

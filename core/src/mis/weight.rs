@@ -19,8 +19,8 @@ use crate::real::Real;
 /// - `value`: f(x), finite (not divided by any density).
 ///
 /// # Errors
-/// [`Error::Range`] for arguments outside these ranges or a term beyond the range of `f32`;
-/// [`Error::NotFinite`] for NaN or infinity among them.
+/// [`Error::Length`] for different lengths; [`Error::Range`] for arguments outside these ranges or a term beyond the
+/// range of `f32`; [`Error::NotFinite`] for NaN or infinity among them.
 ///
 /// ```
 /// // f is exactly 2 p_0: the samples of technique 0 add 2, those of technique 1 nothing.
@@ -35,8 +35,8 @@ pub fn optimal_contribution(
     alpha: &[f32],
     value: f32,
 ) -> Result<f32, Error> {
-    let one_length = counts.len() == pdf.len() && alpha.len() == pdf.len();
-    ensure(one_length && (1..=MAX_TECHNIQUES).contains(&pdf.len()), Error::Range)?;
+    ensure(counts.len() == pdf.len() && alpha.len() == pdf.len(), Error::Length)?;
+    ensure((1..=MAX_TECHNIQUES).contains(&pdf.len()), Error::Range)?;
     let own = (pdf.get(technique), counts.get(technique), alpha.get(technique));
     let (Some(&own_pdf), Some(&own_count), Some(&own_alpha)) = own else { return Err(Error::Range) };
     ensure(value.is_finite() && pdf.iter().chain(alpha).all(|x| x.is_finite()), Error::NotFinite)?;

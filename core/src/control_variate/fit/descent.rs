@@ -66,8 +66,8 @@ pub(crate) struct About<'a, R> {
 /// previous frame's solution is a good start for the next (section 4.2.6).
 ///
 /// # Errors
-/// As for [`estimate`](crate::control_variate::estimate) by this estimator, whose workspace it needs, and
-/// [`Error::NotFinite`] for a start that is not finite. The coefficients are written only on success.
+/// As for [`estimate`](crate::control_variate::estimate) by this estimator, whose workspace it needs;
+/// [`Error::Length`] for another number of coefficients, [`Error::NotFinite`] for a start that is not finite. The coefficients are written only on success.
 ///
 /// ```
 /// use noisefloor::control_variate::{Config, Estimator, Samples, gradient_descent};
@@ -91,7 +91,7 @@ pub fn estimate_from<R: Real>(
     let reader = Reader::new(config, samples)?;
     Plan::new::<R>(config, basis.columns(), reader.len())?;
     let columns = config.controls + basis.columns();
-    ensure(coefficients.len() == columns * reader.channels(), Error::Range)?;
+    ensure(coefficients.len() == columns * reader.channels(), Error::Length)?;
     ensure(coefficients.iter().all(|value| value.is_finite()), Error::NotFinite)?;
     reader.check()?;
     let loaded = design::size(reader.len(), columns, reader.channels());

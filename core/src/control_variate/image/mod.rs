@@ -92,7 +92,7 @@ fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
 /// ratio, for skipping samples, for control functions, for estimators other than the robust, leave-one-out and K-fold
 /// ones, for the last if something is known, and for solvers other than `Auto` and the normal equations;
 /// [`Error::Range`] also for an image without pixels or with more than [`Image::MAX_PIXELS`], for windows and parts
-/// that [`Image`] does not allow, for negative factors or integrals and for arrays of the wrong length;
+/// that [`Image`] does not allow, and for negative factors or integrals; [`Error::Length`] also for arrays of [`Image`];
 /// [`Error::NotFinite`] for factors, for what is known and for integrals that are not finite.
 ///
 /// ```
@@ -137,7 +137,7 @@ pub fn estimate_image_by<P: Processor>(
     let reader = Reader::new(config, samples)?;
     image.check(config, call.pixels, samples.f.len())?;
     let n = reader.len() / call.pixels.max(1);
-    ensure(n * call.pixels == reader.len(), Error::Range)?;
+    ensure(n * call.pixels == reader.len(), Error::Length)?;
     reader.check()?;
     let call = Call { n, reader, ..call };
     let mut arena = Arena::new(workspace, call.workspace_len())?;

@@ -224,7 +224,7 @@ impl Image<'_> {
         let surfaces_fit = self.surfaces.is_empty() || self.surfaces.len() == pixels;
         let known_fits = fits(self.known, Some(values)) && self.known.is_empty() == self.known_integrals.is_empty();
         let lengths_fit = surfaces_fit && known_fits && fits(self.factors, each) && fits(self.known_integrals, each);
-        ensure(lengths_fit, Error::Range)?;
+        ensure(lengths_fit, Error::Length)?;
         let values = [self.factors, self.known, self.known_integrals].into_iter().flatten();
         ensure(values.into_iter().all(|value| value.is_finite()), Error::NotFinite)?;
         ensure(self.factors.iter().chain(self.known_integrals).all(|&value| value >= 0.0), Error::Range)

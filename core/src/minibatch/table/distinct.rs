@@ -29,7 +29,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     /// built again without them, which takes time for every item.
     ///
     /// # Errors
-    /// These change nothing: [`Error::Range`] for more draws than items, or another number of
+    /// These change nothing: [`Error::Range`] for more draws than items; [`Error::Length`] for another number of
     /// weights; [`Error::NoSamples`] where the uniform fraction is 0 and fewer items have an importance above 0.
     #[inline]
     pub fn draw_distinct(

@@ -24,7 +24,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// The generator advances by 64 bits, whatever the length. An empty `index` is no error, and leaves it where it is.
     ///
     /// # Errors
-    /// [`Error::Range`] for another number of weights; [`Error::NoSamples`] where every importance and the
+    /// [`Error::Length`] for another number of weights; [`Error::NoSamples`] where every importance and the
     /// uniform fraction are 0.
     // As the four below: without one of them, draws take 7 to 15 % more instructions.
     #[inline(always)]
@@ -231,9 +231,9 @@ impl Descent<'_> {
 const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
 /// # Errors
-/// [`Error::Range`] unless there are as many weights as indices, or none at all.
+/// [`Error::Length`] unless there are as many weights as indices, or none at all.
 pub(super) fn check_lengths(index: &[u32], weight: &Option<&mut [f32]>) -> Result<(), Error> {
-    ensure(weight.as_ref().is_none_or(|weight| weight.len() == index.len()), Error::Range)
+    ensure(weight.as_ref().is_none_or(|weight| weight.len() == index.len()), Error::Length)
 }
 
 /// The bits of draw `k`: draws need no order.

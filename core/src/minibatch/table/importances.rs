@@ -158,10 +158,10 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// Writes the probabilities of some items; elements of `probability` beyond them stay as they are.
     ///
     /// # Errors
-    /// [`Error::Range`] for an item that does not exist, or fewer elements than items; [`Error::NoSamples`] as
-    /// for [`Table::draw`].
+    /// [`Error::Range`] for an item that does not exist; [`Error::Length`] for fewer elements than items;
+    /// [`Error::NoSamples`] as for [`Table::draw`].
     pub fn probabilities(&self, index: &[u32], probability: &mut [f32]) -> Result<(), Error> {
-        ensure(probability.len() >= index.len(), Error::Range)?;
+        ensure(probability.len() >= index.len(), Error::Length)?;
         self.check_items(index)?;
         let mixture = self.mixture()?;
         for (out, &item) in probability.iter_mut().zip(index) {
@@ -211,14 +211,14 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     /// A table of `items` items, with these importances or, without, 1 for each, and [`DEFAULT_UNIFORM_FRACTION`].
     ///
     /// # Errors
-    /// [`Error::Range`] for no items, another number of importances or a negative one; [`Error::NotFinite`] for
-    /// NaN or infinity; [`Error::NoSamples`] if all are 0; [`Error::Memory`] for less than [`importance_len`] and
+    /// [`Error::Range`] for no items or a negative importance; [`Error::Length`] for another number of them;
+    /// [`Error::NotFinite`] for NaN or infinity; [`Error::NoSamples`] if all are 0; [`Error::Memory`] for less than [`importance_len`] and
     /// [`sums_len`].
     pub fn new(importance: I, sums: S, items: u32, values: Option<&[f32]>) -> Result<Self, Error> {
         let state = State { scale: 1.0, items, uniform_fraction: DEFAULT_UNIFORM_FRACTION };
         let mut table = Table::resume(importance, sums, state)?;
         if let Some(values) = values {
-            ensure(values.len() == items as usize, Error::Range)?;
+            ensure(values.len() == items as usize, Error::Length)?;
             check_importances(values)?;
             ensure(values.iter().any(|&q| q > 0.0), Error::NoSamples)?;
         }

@@ -55,7 +55,7 @@ impl Shard {
 /// Every process calls it with the same shards and a generator of the same seed, and so learns its own part.
 ///
 /// # Errors
-/// As for [`Shard::sum`]; [`Error::Range`] for different lengths or a fraction outside 0..=1;
+/// As for [`Shard::sum`]; [`Error::Length`] for different lengths, [`Error::Range`] for a fraction outside 0..=1;
 /// [`Error::NotFinite`]; [`Error::NoSamples`] if every importance and the fraction are 0.
 ///
 /// ```
@@ -76,7 +76,7 @@ pub fn allocate(
     counts: &mut [u32],
 ) -> Result<(), Error> {
     check_part(uniform_fraction)?;
-    ensure(shards.clone().count() == counts.len(), Error::Range)?;
+    ensure(shards.clone().count() == counts.len(), Error::Length)?;
     let all = Shard::sum(shards.clone())?;
     let fraction = f64::from(uniform_fraction);
     let share = |shard: Shard| shard.ways(&all, fraction).map(|(tree, uniform)| tree + uniform);
@@ -115,7 +115,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// All tables must have the same uniform fraction. How many items each process draws, [`allocate`] says.
     ///
     /// # Errors
-    /// [`Error::Range`] for another number of weights, or if `all` is less than this table alone, or 2^53
+    /// [`Error::Length`] for another number of weights; [`Error::Range`] if `all` is less than this table alone, or 2^53
     /// items; [`Error::NotFinite`]; [`Error::NoSamples`] if nothing can be drawn from any, or from this table and
     /// `index` is not empty. Where `all` dwarfs this table a weight may be infinite.
     #[inline]

@@ -27,13 +27,13 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     /// there are.
     ///
     /// # Errors
-    /// These change nothing: [`Error::Range`] for different lengths, an item that does not exist, a negative
-    /// importance, or a momentum outside 0..=1; [`Error::NotFinite`].
+    /// These change nothing: [`Error::Length`] for different lengths; [`Error::Range`] for an item that does not exist, a
+    /// negative importance, or a momentum outside 0..=1; [`Error::NotFinite`].
     #[inline]
     pub fn update(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
         check_importances(importance)?;
         check_part(momentum)?;
-        ensure(index.len() == importance.len(), Error::Range)?;
+        ensure(index.len() == importance.len(), Error::Length)?;
         self.check_items(index)?;
         // -0 would make importances of -0, a sign that stands for items taken out.
         let momentum = momentum + 0.0;
