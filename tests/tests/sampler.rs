@@ -65,17 +65,19 @@ fn runs_are_nets() {
 /// All four numbers are nets together, of a t that grows slowly: of 2^m points those intervals of 2^(t - m) that count.
 #[test]
 fn four_numbers_are_nets() {
-    // Of 4 to 512 points.
-    let strengths = [1, 1, 1, 2, 2, 2, 3, 3];
+    // Of 4 to 131,072 points.
+    let strengths = [1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 5, 5, 5, 5, 4];
+    let check = |sampler: Sampler, m: u32, t: u32| {
+        let points: Vec<[f32; 4]> = (0..1 << m).map(|i| sampler.moved(0, 0, i).draw()).collect();
+        let side = m - t + 1;
+        let cuts = (0..side.pow(4)).map(|k| [0, 1, 2, 3].map(|axis| k / side.pow(axis) % side));
+        for cut in cuts.filter(|cut| cut.iter().sum::<u32>() == m - t) {
+            assert!(is_even(&points, cut), "{sampler:?}, 2^{m}, {cut:?}");
+        }
+    };
     for pixel in (0..PIXELS).step_by(61) {
         for sampler in [root(pixel), root(pixel).domain(3), root(pixel).scramble(3)] {
-            for (m, t) in (2..).zip(strengths) {
-                let points: Vec<[f32; 4]> = (0..1 << m).map(|i| sampler.moved(0, 0, i).draw()).collect();
-                let cuts = (0..6_u32.pow(4)).map(|k| [k % 6, k / 6 % 6, k / 36 % 6, k / 216]);
-                for cut in cuts.filter(|cut| cut.iter().sum::<u32>() == m - t) {
-                    assert!(is_even(&points, cut), "{sampler:?}, 2^{m}, {cut:?}");
-                }
-            }
+            (2..).zip(strengths).take(if pixel == 0 { 16 } else { 8 }).for_each(|(m, t)| check(sampler, m, t));
         }
     }
 }
@@ -333,7 +335,7 @@ fn pinned_values() {
 }
 
 const PINNED: [u32; 4] = [7_610_915, 13_897_400, 1_615_489, 16_714_429];
-const PINNED_HASH: u64 = 17_346_464_138_109_079_843;
+const PINNED_HASH: u64 = 4_757_551_213_029_034_836;
 
 #[test]
 fn filled_at_once() {
