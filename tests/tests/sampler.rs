@@ -65,8 +65,8 @@ fn runs_are_nets() {
 /// All four numbers are nets together, of a t that grows slowly: of 2^m points those intervals of 2^(t - m) that count.
 #[test]
 fn four_numbers_are_nets() {
-    // Of 4 to 131,072 points.
-    let strengths = [1, 1, 1, 2, 2, 2, 3, 3, 3, 3, 4, 5, 5, 5, 6, 5];
+    // Of 4 to 65,536 points.
+    let strengths = [1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4, 4, 5, 6];
     let check = |sampler: Sampler, m: u32, t: u32| {
         let points: Vec<[f32; 4]> = (0..1 << m).map(|i| sampler.moved(0, 0, i).draw()).collect();
         let side = m - t + 1;
@@ -335,7 +335,7 @@ fn pinned_values() {
 }
 
 const PINNED: [u32; 4] = [7_610_915, 13_897_400, 1_615_489, 16_714_429];
-const PINNED_HASH: u64 = 13_438_029_899_180_543_659;
+const PINNED_HASH: u64 = 4_692_999_050_569_996_554;
 
 #[test]
 fn filled_at_once() {
