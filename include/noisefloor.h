@@ -9,11 +9,11 @@
  *  - Every function that can fail returns nf_status: 0 (NF_OK) or a negative NF_ERR_*. Outputs are written, and objects
  *    changed, only on success. Inputs are checked: NULL, ranges, lengths, alignment, finite values.
  *  - Memory: nothing is ever allocated. Objects and workspaces live in caller memory, 8-byte aligned, of at least the
- *    bytes that the matching size function returns. Neither they nor outputs need be initialised. Nothing needs to be
- *    destroyed. An object must not be moved or copied while it is in use, unless its description says otherwise. The
- *    bytes of one in caller memory mean something only to the library file that made them, which alone may change
- *    them: NF_ERR_STATE tells memory that holds no object, not an object whose bytes were changed. Tables are kept, and
- *    sent to other builds and machines, with nf_table_save(). Calls take up to 40 kB of stack (x86-64).
+ *    bytes that the matching size function returns. Neither they nor outputs need be initialised, nor anything
+ *    destroyed. Pointers are kept by tables, tiles and tile samplers alone. An object must not be moved or copied while
+ *    it is in use, unless its description says otherwise. The bytes of one mean something only to the library file that
+ *    made them, which alone may change them: NF_ERR_STATE tells memory that holds no object, not an object whose bytes
+ *    were changed. Tables are kept, and sent elsewhere, with nf_table_save(). Calls take up to 40 kB of stack (x86-64).
  *  - Threads: no locks, and no shared state but a cached answer of the processor's. Any number of threads may read an
  *    object; one at a time may write it.
  *  - Arithmetic: IEEE 754, rounding to nearest. Where the host flushes subnormal numbers to zero, values above 1e-30

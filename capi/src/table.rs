@@ -68,10 +68,11 @@ fn parts(blocks: u32) -> Option<(usize, usize)> {
 }
 
 /// Makes a table of `items` items in `memory`, of which more than nf_table_size(items) bytes are room for
-/// nf_table_append. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch
+/// nf_table_append; writes to all of it. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch
 /// (Algorithm 4). uniform_fraction becomes .2.
 ///
-/// NF_ERR_RANGE: no items, or a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all are 0; NF_ERR_MEMORY.
+/// NF_ERR_RANGE: no items, bytes beyond any memory, a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all
+/// are 0; NF_ERR_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_init(
     table: *mut nf_table,
@@ -317,7 +318,10 @@ unsafe fn change(table: *mut nf_table, change: impl FnOnce(Writer<'_>) -> Result
     })())
 }
 
-const NO_TABLE: Wrong = Wrong(NF_ERR_STATE, c"all fields but uniform_fraction must be as nf_table_init() made them");
+const NO_TABLE: Wrong = Wrong(
+    NF_ERR_STATE,
+    c"it must be a table: all fields but uniform_fraction as nf_table_init() or nf_table_load() made them",
+);
 
 /// What is wrong with a table.
 ///
@@ -353,6 +357,8 @@ unsafe fn create(
 ) -> Result<(), nf_status> {
     let needed = nf_table_size(items);
     ensure(needed > 0, NF_ERR_MEMORY)?;
+    // All of them are written.
+    ensure(bytes <= isize::MAX as usize, NF_ERR_RANGE)?;
     // SAFETY: passed on to the caller.
     let start = unsafe { convert::memory(memory, bytes, needed) }?;
     let fits = |blocks| parts(blocks).is_some_and(|(importance, sums)| importance + sums + SLACK <= bytes);

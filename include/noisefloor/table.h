@@ -36,9 +36,10 @@ typedef struct nf_table {
 size_t nf_table_size(uint32_t items);
 
 // Makes a table of `items` items in `memory`, of which more than nf_table_size(items) bytes are room for
-// nf_table_append. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch
+// nf_table_append; writes to all of it. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch
 // (Algorithm 4). uniform_fraction becomes .2.
-// NF_ERR_RANGE: no items, or a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all are 0; NF_ERR_MEMORY.
+// NF_ERR_RANGE: no items, bytes beyond any memory, a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all
+// are 0; NF_ERR_MEMORY.
 nf_status nf_table_init(nf_table *table, void *memory, size_t bytes, uint32_t items, const float *importance);
 
 // Draws `batch` items with replacement, independently, in proportion to importance.

@@ -47,17 +47,24 @@ def plain(view, kind):
     return numbers if numbers.flags.aligned else numbers.copy()
 
 
-def warn_of_lost_digits(name, view):
-    """Warns where numbers as float32 are some thousand different ones at most, though they need not be."""
-    if view.dtype.kind in "fiu" and view.itemsize > 4 and view.size:
-        low, high = float(view.min()), float(view.max())
-        if 0 < high - low < 2**-14 * max(abs(low), abs(high)):
-            warnings.warn(
-                f"{name} is {low:.9g} to {high:.9g}, and rounded to float32, which has 7 digits: subtract a constant, "
-                "and add it to the mean",
-                RuntimeWarning,
-                stacklevel=3,
-            )
+def warn_of_lost_digits(name, view, axis=None):
+    """Warns where numbers, those along the axis say, as float32 are some thousand different ones at most, though they
+    need not be, or nothing at all."""
+    if view.dtype.kind not in "fiu" or view.itemsize <= 4 or view.size == 0:
+        return
+    low, high = (numpy.atleast_1d(of(view, axis=axis)).astype(numpy.float64) for of in (numpy.min, numpy.max))
+    largest = numpy.maximum(abs(low), abs(high))
+    with numpy.errstate(invalid="ignore"):
+        coarse = (0 < high - low) & (high - low < 2**-14 * largest)
+    for wrong, words in (
+        (coarse, "which has 7 digits: subtract a constant, and add it to the mean"),
+        ((0 < largest) & (largest < 2**-126), "which has no such small numbers: multiply by a constant, and divide the mean"),
+    ):
+        if wrong.any():
+            at = numpy.argmax(wrong)
+            least, most = low.flat[at], high.flat[at]
+            told = f"{name} is {least:.9g} to {most:.9g}, and rounded to float32, {words}"
+            warnings.warn(told, RuntimeWarning, stacklevel=3)
 
 
 def integers(name, value, most):

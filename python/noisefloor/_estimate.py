@@ -70,11 +70,11 @@ def estimate(
 
     Returns:
         An `Estimate` with u's and f's leading dimensions. u and f are rounded to float32: of f = 1e8 + g nothing of g
-        is left, and the standard error is that of what is left. A warning says so of float64; estimate g.
+        is left, and the standard error is that of what is left. Warnings say so of float64, of tiny values, too; estimate
+        g, or a multiple. The results are float32.
     """
     given = _arrays.array("u", u), _arrays.array("f", f)
     u, f = _arrays.floats("u", given[0]), _arrays.floats("f", given[1])
-    _arrays.warn_of_lost_digits("f", given[1])
     values = 1 if channels else 0
     if u.ndim < 2 or f.ndim < 1 + values:
         one = "; for one dim u[:, None]" if u.ndim == 1 else ""
@@ -96,6 +96,7 @@ def estimate(
         leading = numpy.broadcast_shapes(u.shape[:-2], f.shape[: f.ndim - 1 - values])
     except ValueError:
         raise ValueError(f"the leading dimensions of u {u.shape} and f {f.shape} do not broadcast") from None
+    _arrays.warn_of_lost_digits("f", given[1], -1 - values)
     wide = numpy.broadcast_to(u, leading + (n, d)), numpy.broadcast_to(f, leading + own)
     out = numpy.empty(leading, _c.ESTIMATE)
     workspace = _c.workspace(_c.cv_workspace_size(_c.address(config), n))

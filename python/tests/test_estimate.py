@@ -174,6 +174,10 @@ def test_lost_digits_are_told():
         with pytest.warns(RuntimeWarning, match="subtract a constant, and add it to the mean") as told:
             noisefloor.estimate(u, lost)
         assert told[0].filename == __file__
+    with pytest.warns(RuntimeWarning, match="f is 10000000"):
+        noisefloor.estimate(u, numpy.stack([f, f + 1e8]))
+    with pytest.warns(RuntimeWarning, match="no such small numbers: multiply by a constant"):
+        noisefloor.estimate(u, 1e-80 * f)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for kept in (f + 1e3, 1e-30 * f, (f + 1e8).astype(numpy.float32), numpy.full(64, 1e8), numpy.full(64, math.pi)):

@@ -109,7 +109,10 @@ static void checked(void)
     config.solver = NF_SOLVER_DUAL;
     CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, NULL);
     config.controls = 1;
-    CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, "solver must not be the dual");
+    CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, "solver must not be the dual with controls");
+    config.controls = 0;
+    config.estimator = NF_CV_INCREMENTAL;
+    CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, "solver must not be the dual for the incremental estimator");
     CHECK_NAMED(NF_CHECK_CV_CONFIG, NULL, "NULL");
     CHECK_NAMED(NF_CHECK_DIMS + 1, &config, "NF_CHECK_*");
     CHECK_NAMED(UINT32_MAX, NULL, "NF_CHECK_*");

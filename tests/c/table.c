@@ -101,6 +101,7 @@ static void sizes_and_init(void)
     CHECK_REFUSED(nf_table_init(&out, m.start, bytes, 3, (const float *)misaligned(ones)), NF_ERR_ALIGNMENT, out);
     CHECK_REFUSED(nf_table_init(&out, m.start, bytes - 1, 3, ones), NF_ERR_MEMORY, out);
     CHECK_REFUSED(nf_table_init(&out, m.start, 0, 3, ones), NF_ERR_MEMORY, out);
+    CHECK_REFUSED(nf_table_init(&out, m.start, SIZE_MAX, 3, ones), NF_ERR_RANGE, out);
     CHECK_REFUSED(nf_table_init(&out, m.start, bytes, UINT32_MAX, NULL), NF_ERR_MEMORY, out);
     CHECK_REFUSED(nf_table_init(&out, m.start, bytes, 0, ones), NF_ERR_RANGE, out);
     bad[1] = -1.0f;

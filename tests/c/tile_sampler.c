@@ -94,6 +94,7 @@ static void fill(const nf_tile *tile)
     memory room = memory_new(COUNT * sizeof(float));
     float *u = (float *)room.start;
     nf_tile_sampler s[3];
+    nf_tile wrong;
     uint32_t x, y, i, bad[3] = {2, 5, 1};
     size_t at = 0;
     s[0] = nf_tile_sampler_pixel(tile, 6, 7, 1, 2);
@@ -132,6 +133,22 @@ static void fill(const nf_tile *tile)
     s[1].tile = NULL;
     CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, 1, 1, 1, u, EACH), NF_OK);
     CHECK(u[2] == 0.0f && u[5] == 0.0f && u[0] != 0.0f);
+
+    /* A tile that nobody made, and one that cannot be read. */
+    wrong = *tile;
+    s[1].tile = &wrong;
+    poison(u, room.bytes);
+    wrong.values = NULL;
+    CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, 1, 1, 1, u, EACH), NF_ERR_NULL);
+    wrong.values = tile->values;
+    wrong.bytes -= 1;
+    CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, 1, 1, 1, u, EACH), NF_ERR_RANGE);
+    s[1].tile = (const nf_tile *)misaligned(&wrong);
+    CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, 1, 1, 1, u, EACH), NF_ERR_ALIGNMENT);
+    s[1].tile = tile;
+    s[1].scrambled = 2;
+    CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, 1, 1, 1, u, EACH), NF_ERR_RANGE);
+    CHECK(is_poisoned(u, room.bytes));
     memory_free(&room);
 }
 

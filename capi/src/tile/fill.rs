@@ -1,12 +1,12 @@
 //! Many pixels and samples in one call.
 
-use super::sampler::{nf_tile_sampler, of};
+use super::sampler::{check_sampler, nf_tile_sampler, of};
 use super::view::core_view;
-use crate::fill;
 use crate::status::*;
+use crate::{convert, fill};
 use noisefloor_core::tile::PixelSampler;
 
-/// As nf_sampler_fill(), of tiles' samplers. Those without a tile draw zeros.
+/// As nf_sampler_fill(), of tiles' samplers. Those without a tile draw zeros. NF_ERR_RANGE also: see nf_check().
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_tile_sampler_fill(
     samplers: *const nf_tile_sampler,
@@ -19,7 +19,13 @@ pub unsafe extern "C" fn nf_tile_sampler_fill(
     len: usize,
 ) -> nf_status {
     // SAFETY: the caller's arrays, of the lengths that are stated, and samplers of live tiles, if of any.
-    unsafe { fill::fill((samplers, dims, domains), [width, height, samples], (u, len), Live) }
+    unsafe {
+        let all = convert::slice(samplers, domains);
+        match all.and_then(|all| Ok(all.iter().try_for_each(|sampler| check_sampler(sampler))?)) {
+            Ok(()) => fill::fill((samplers, dims, domains), [width, height, samples], (u, len), Live),
+            Err(status) => status,
+        }
+    }
 }
 
 /// A sampler whose tile, as nf_tile_sampler_pixel checked, is NULL or live.

@@ -2,6 +2,7 @@
 
 use super::view::{check_tile, core_view, live, nf_tile};
 use crate::convert;
+use crate::status::*;
 use crate::wrong::{Wrong, rule};
 use noisefloor_core::tile::{Sampler, Shape, Tile};
 
@@ -74,7 +75,7 @@ static NO_TILE: Tile<'static> =
 /// The tile must be NULL or live.
 pub(crate) unsafe fn check_sampler(sampler: &nf_tile_sampler) -> Result<(), Wrong> {
     rule(sampler.scrambled <= 1, c"scrambled must be 0 or 1")?;
-    rule(sampler.tile.is_aligned(), c"tile must be aligned")?;
+    ensure(sampler.tile.is_aligned(), Wrong(NF_ERR_ALIGNMENT, c"tile must be aligned"))?;
     // SAFETY: passed on to the caller; it is aligned.
     let Some(tile) = (unsafe { live(sampler.tile) }) else { return Ok(()) };
     check_tile(tile)?;

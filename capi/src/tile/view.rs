@@ -63,7 +63,7 @@ pub(crate) fn check_tile(tile: &nf_tile) -> Result<(), Wrong> {
     let progressive = pick(progressive, &[false, true], c"progressive must be 0 or 1")?;
     let shape = Shape { size, spp, dims, frames, bits, progressive };
     shape.check()?;
-    rule(!values.is_null(), c"values must not be NULL")?;
+    ensure(!values.is_null(), Wrong(NF_ERR_NULL, c"values must not be NULL"))?;
     rule(bytes as u64 == shape.payload_bytes(), c"bytes must be size * size * spp * dims * frames * bits / 8")
 }
 

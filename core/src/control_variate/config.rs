@@ -211,7 +211,10 @@ impl Config {
         let is_least_squares = self.estimator == Estimator::LeastSquares && self.ridge != Ridge::Auto;
         let square_root = c"solver must not be the square root but for least squares without an automatic ridge";
         excluded(self.solver != Solver::SquareRoot || is_least_squares, square_root)?;
-        excluded(self.solver != Solver::Dual || self.controls == 0, c"solver must not be the dual with controls")?;
+        let is_dual = self.solver == Solver::Dual;
+        excluded(!is_dual || self.controls == 0, c"solver must not be the dual with controls")?;
+        let incremental = c"solver must not be the dual for the incremental estimator";
+        excluded(!is_dual || self.estimator != Estimator::Incremental, incremental)?;
         let terms = c"dims, order, slices and controls make more than 136 terms: lower one of them";
         let shape = Shape::new(self.dims, self.order, self.slices, MAX_TERMS - self.controls);
         shape.map_err(|error| Invalid { error, rule: terms })
