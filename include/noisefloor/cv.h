@@ -221,7 +221,7 @@ nf_status nf_cv_gradient_descent(const nf_cv_config *config, const nf_cv_samples
 typedef struct nf_cv_accumulator nf_cv_accumulator;
 
 // Bytes of an accumulator, and in `workspace`, unless NULL, those that nf_cv_accumulator_estimate() needs; both 0 for
-// a configuration that is NULL, out of range or not for streaming.
+// a configuration that is NULL, out of range or not for streaming, and the first for a misaligned `workspace`.
 size_t nf_cv_accumulator_size(const nf_cv_config *config, size_t *workspace);
 
 // Makes an empty accumulator in `memory`, or empties one: `*out` is its handle, the same address.

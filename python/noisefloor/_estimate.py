@@ -14,8 +14,8 @@ ImageEstimator = Literal["robust", "leave_one_out", "k_fold"]
 Estimator = Literal[ImageEstimator, "least_squares", "gradient_descent", "incremental"]
 Basis = Literal["legendre", "step", "sine", "gaussian"]
 
-#: Estimates made in one call: the interpreter sees an interrupt between two.
-CHUNK = 1 << 15
+#: Samples of one call: the interpreter sees an interrupt between two.
+CHUNK = 1 << 19
 #: As many numbers as are copied for one call, where arrays are broadcast.
 COPIED = 1 << 24
 
@@ -101,9 +101,9 @@ def estimate(
     out = numpy.empty(leading, _c.ESTIMATE)
     workspace = _c.workspace(_c.cv_workspace_size(_c.address(config), n))
     samples = _c.Samples(n=n)
-    each = CHUNK
+    each = max(1, CHUNK // n)
     if not all(array.flags.c_contiguous for array in wide):
-        each = min(CHUNK, max(1, COPIED // (n * (d + config.channels))))
+        each = max(1, min(each, COPIED // (n * (d + config.channels))))
     for first in range(0, out.size, each):
         some = range(first, min(first + each, out.size))
         # Names keep copies alive during the call.

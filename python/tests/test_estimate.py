@@ -74,7 +74,7 @@ def test_what_is_broadcast_is_copied_in_parts(monkeypatch):
             for part, own in ((shared, 2), (other, 1))
         ]
         expected = noisefloor.estimate(*wide, order=1)
-        for chunk, copied in ((1 << 15, 1 << 24), (7, 1 << 24), (1 << 15, 5000), (1 << 15, 1)):
+        for chunk, copied in ((1 << 19, 1 << 24), (7 * 256, 1 << 24), (1 << 19, 5000), (1, 1)):
             monkeypatch.setattr(noisefloor._estimate, "CHUNK", chunk)
             monkeypatch.setattr(noisefloor._estimate, "COPIED", copied)
             for part, whole in zip(noisefloor.estimate(shared, other, order=1), expected):
@@ -306,7 +306,7 @@ def test_other_threads_run_meanwhile():
     thread.start()
     noisefloor.estimate(u[:1], f[:1])
     start = time.perf_counter()
-    noisefloor._estimate.CHUNK, before = len(u), noisefloor._estimate.CHUNK
+    noisefloor._estimate.CHUNK, before = f.size, noisefloor._estimate.CHUNK
     try:
         noisefloor.estimate(u, f)
     finally:

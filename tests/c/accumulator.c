@@ -92,6 +92,8 @@ static void init_errors(void)
     const size_t bytes = nf_cv_accumulator_size(&config, NULL);
     memory state = memory_new(bytes);
     nf_cv_accumulator *out;
+    size_t scratch[2];
+    CHECK(nf_cv_accumulator_size(&config, (size_t *)misaligned(scratch)) == 0);
     CHECK_REFUSED(nf_cv_accumulator_init(NULL, bytes, &config, &out), NF_ERR_NULL, out);
     CHECK_REFUSED(nf_cv_accumulator_init(state.start, bytes, NULL, &out), NF_ERR_NULL, out);
     CHECK_STATUS(nf_cv_accumulator_init(state.start, bytes, &config, NULL), NF_ERR_NULL);

@@ -42,16 +42,18 @@ const MAGIC: u64 = magic::<Header>("nf_cv_accumulator");
 const HEADER: usize = size_of::<Header>();
 
 /// Bytes of an accumulator, and in `workspace`, unless NULL, those that nf_cv_accumulator_estimate() needs; both 0 for
-/// a configuration that is NULL, out of range or not for streaming.
+/// a configuration that is NULL, out of range or not for streaming, and the first for a misaligned `workspace`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_size(config: *const nf_cv_config, workspace: *mut usize) -> usize {
     // SAFETY: the caller's pointer, checked there for NULL and alignment.
     let empty = unsafe { convert::reference(config) }.and_then(empty);
     let [all, scratch] = empty.map_or([0; 2], |(_, sizes)| sizes);
-    // SAFETY: the caller passes NULL or a place for a number.
-    if let Ok(workspace) = unsafe { convert::room(workspace) } {
-        workspace.write(scratch);
+    if workspace.is_null() {
+        return all;
     }
+    // SAFETY: the caller passes a place for a number.
+    let Ok(workspace) = (unsafe { convert::room(workspace) }) else { return 0 };
+    workspace.write(scratch);
     all
 }
 
