@@ -301,9 +301,11 @@ NFS_FUNCTION nfs_floats nfs_draw4(nfs s NFS_TABLE)
     u.x = nfs_unit(s, p.x, 1u);
     u.y = nfs_unit(s, p.y, 2u);
     further = first & 0x007fffffu;
-    further ^= further << 7;
+    further ^= further << 6;
+    further ^= further << 8;
+    further ^= further << 9;
     further ^= further << 10;
-    further ^= further << 12;
+    further ^= further << 16;
     first = further ^ NFS_COLUMN(0, 0x80000000u) ^ NFS_COLUMN(1, 0x40000000u) ^
             NFS_COLUMN(2, 0xa0000000u) ^ NFS_COLUMN(3, 0xd0000000u) ^ NFS_COLUMN(4, 0x68000000u) ^
             NFS_COLUMN(5, 0xfc000000u) ^ NFS_COLUMN(6, 0x72000000u) ^ NFS_COLUMN(7, 0xab000000u) ^
