@@ -9,7 +9,7 @@
  *  - Every function that can fail returns nf_status: 0 (NF_OK) or a negative NF_ERR_*. Outputs are written, and objects
  *    changed, only on success. Inputs are checked: NULL, ranges, lengths, alignment, finite values.
  *  - Memory: nothing is ever allocated. Objects and workspaces live in caller memory, 8-byte aligned, of at least the
- *    bytes that the matching size function returns. Neither they nor outputs need be initialised, nor anything
+ *    bytes that the matching size function returns. Neither they nor outputs need be initialised, and nothing
  *    destroyed. Pointers are kept by tables, tiles and tile samplers alone. An object must not be moved or copied while
  *    it is in use, unless its description says otherwise. The bytes of one mean something only to the library file that
  *    made them, which alone may change them: NF_ERR_STATE tells memory that holds no object, not an object whose bytes

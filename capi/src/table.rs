@@ -68,8 +68,8 @@ fn parts(blocks: u32) -> Option<(usize, usize)> {
 }
 
 /// Makes a table of `items` items in `memory`, of which more than nf_table_size(items) bytes are room for
-/// nf_table_append; writes to all of it. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch
-/// (Algorithm 4). uniform_fraction becomes .2.
+/// nf_table_append; all are written. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for
+/// an initial epoch (Algorithm 4). uniform_fraction becomes .2.
 ///
 /// NF_ERR_RANGE: no items, bytes beyond any memory, a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all
 /// are 0; NF_ERR_MEMORY.
@@ -244,7 +244,7 @@ pub unsafe extern "C" fn nf_table_save(table: *const nf_table, saved: *mut c_voi
 
 /// A table as nf_table_save wrote it, in memory as for nf_table_init: it draws the same items from the same generator.
 ///
-/// NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: the bytes; NF_ERR_MEMORY; NF_ERR_RANGE: len.
+/// NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: `saved`; NF_ERR_MEMORY; NF_ERR_RANGE: bytes, len.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_load(
     table: *mut nf_table,
@@ -318,10 +318,8 @@ unsafe fn change(table: *mut nf_table, change: impl FnOnce(Writer<'_>) -> Result
     })())
 }
 
-const NO_TABLE: Wrong = Wrong(
-    NF_ERR_STATE,
-    c"it must be a table: all fields but uniform_fraction as nf_table_init() or nf_table_load() made them",
-);
+const NO_TABLE: Wrong =
+    Wrong(NF_ERR_STATE, c"it must be a table, all fields but uniform_fraction as nf_table_init() made them");
 
 /// What is wrong with a table.
 ///
@@ -357,10 +355,10 @@ unsafe fn create(
 ) -> Result<(), nf_status> {
     let needed = nf_table_size(items);
     ensure(needed > 0, NF_ERR_MEMORY)?;
-    // All of them are written.
-    ensure(bytes <= isize::MAX as usize, NF_ERR_RANGE)?;
     // SAFETY: passed on to the caller.
     let start = unsafe { convert::memory(memory, bytes, needed) }?;
+    // All of them are written.
+    ensure(bytes <= isize::MAX as usize, NF_ERR_RANGE)?;
     let fits = |blocks| parts(blocks).is_some_and(|(importance, sums)| importance + sums + SLACK <= bytes);
     // The most blocks that fit, by bisection: those of `items` do, one more than the most there can be does not.
     let (mut blocks, mut not) = (items.div_ceil(ARITY as u32), MAX_BLOCKS as u32 + 1);

@@ -36,8 +36,8 @@ typedef struct nf_table {
 size_t nf_table_size(uint32_t items);
 
 // Makes a table of `items` items in `memory`, of which more than nf_table_size(items) bytes are room for
-// nf_table_append; writes to all of it. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch
-// (Algorithm 4). uniform_fraction becomes .2.
+// nf_table_append; all are written. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for
+// an initial epoch (Algorithm 4). uniform_fraction becomes .2.
 // NF_ERR_RANGE: no items, bytes beyond any memory, a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all
 // are 0; NF_ERR_MEMORY.
 nf_status nf_table_init(nf_table *table, void *memory, size_t bytes, uint32_t items, const float *importance);
@@ -89,7 +89,7 @@ nf_status nf_table_probabilities(const nf_table *table, const uint32_t *index, u
 nf_status nf_table_save(const nf_table *table, void *saved, size_t len);
 
 // A table as nf_table_save wrote it, in memory as for nf_table_init: it draws the same items from the same generator.
-// NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: the bytes; NF_ERR_MEMORY; NF_ERR_RANGE: len.
+// NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: `saved`; NF_ERR_MEMORY; NF_ERR_RANGE: bytes, len.
 nf_status nf_table_load(nf_table *table, void *memory, size_t bytes, const void *saved, size_t len);
 
 // What the processes of a data-parallel trainer, each with the table of its part of the data, must know of each

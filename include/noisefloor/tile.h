@@ -119,7 +119,7 @@ nf_tile_sampler nf_tile_sampler_scramble(nf_tile_sampler sampler, uint32_t seed)
 // number is stratified, the third with the first two: draw a choice, or a time, after the two numbers beside it.
 void nf_tile_sampler_draw(nf_tile_sampler sampler, uint32_t dims, float *u);
 
-// As nf_sampler_fill(), of tiles' samplers. Those without a tile draw zeros. NF_ERR_RANGE also: see nf_check().
+// As nf_sampler_fill(), of tiles' samplers, which nf_check() must not refuse. Those without a tile draw zeros.
 nf_status nf_tile_sampler_fill(const nf_tile_sampler *samplers, const uint32_t *dims, size_t domains, uint32_t width,
     uint32_t height, uint32_t samples, float *u, size_t len);
 

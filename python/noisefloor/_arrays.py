@@ -1,5 +1,6 @@
 """Arrays of anybody's, made into those that the library reads, and refusals that name what is wrong."""
 
+import math
 import sys
 import warnings
 
@@ -49,22 +50,32 @@ def plain(view, kind):
 
 def warn_of_lost_digits(name, view, axis=None):
     """Warns where numbers, those along the axis say, as float32 are some thousand different ones at most, though they
-    need not be, or nothing at all."""
+    need not be; and where all are so small that float32 has too few digits for them."""
     if view.dtype.kind not in "fiu" or view.itemsize <= 4 or view.size == 0:
         return
-    low, high = (numpy.atleast_1d(of(view, axis=axis)).astype(numpy.float64) for of in (numpy.min, numpy.max))
-    largest = numpy.maximum(abs(low), abs(high))
-    with numpy.errstate(invalid="ignore"):
-        coarse = (0 < high - low) & (high - low < 2**-14 * largest)
-    for wrong, words in (
-        (coarse, "which has 7 digits: subtract a constant, and add it to the mean"),
-        ((0 < largest) & (largest < 2**-126), "which has no such small numbers: multiply by a constant, and divide the mean"),
-    ):
-        if wrong.any():
-            at = numpy.argmax(wrong)
-            least, most = low.flat[at], high.flat[at]
-            told = f"{name} is {least:.9g} to {most:.9g}, and rounded to float32, {words}"
-            warnings.warn(told, RuntimeWarning, stacklevel=3)
+    least, most = float(view.min()), float(view.max())
+    largest = max(abs(least), abs(most))
+    words = None
+    if 0 < largest < 2**-126:
+        words = "which has few digits, or none, for such: multiply by a constant, and divide the mean"
+    elif math.isfinite(largest):
+        each = view.reshape(1, -1) if axis is None else numpy.moveaxis(view, axis, -1)
+        # Where two are apart, all are.
+        each = each[_are_near(*(each[..., k].astype(numpy.float64) for k in (0, -1)))]
+        low, high = (of(each, axis=-1).astype(numpy.float64) for of in (numpy.min, numpy.max))
+        lost = _are_near(low, high) & (low < high)
+        if lost.any():
+            least, most = low[numpy.argmax(lost)], high[numpy.argmax(lost)]
+            words = "which has 7 digits: subtract a constant, and add it to the mean"
+    if words:
+        told = f"{name} is {least:.9g} to {most:.9g}, and rounded to float32, {words}"
+        warnings.warn(told, RuntimeWarning, stacklevel=3)
+
+
+def _are_near(a, b):
+    """Whether numbers differ by less than 2^-14 of the larger one."""
+    # Halves: their difference does not overflow.
+    return abs(a / 2 - b / 2) < numpy.maximum(abs(a), abs(b)) * 2**-15
 
 
 def integers(name, value, most):
@@ -116,7 +127,7 @@ def parts(state, *names):
     """These parts of a saved state."""
     try:
         return [state[name] for name in names]
-    except TypeError:
+    except (IndexError, TypeError):
         raise TypeError(f"the state is a {type(state).__name__}: what state_dict() returned is expected") from None
     except KeyError as error:
         raise ValueError(f"the state has no {error}: it must be state_dict()'s, of this version") from None

@@ -70,8 +70,8 @@ def estimate(
 
     Returns:
         An `Estimate` with u's and f's leading dimensions. u and f are rounded to float32: of f = 1e8 + g nothing of g
-        is left, and the standard error is that of what is left. Warnings say so of float64, of tiny values, too; estimate
-        g, or a multiple. The results are float32.
+        is left, and the standard error is that of what is left. Warnings say so of float64, and of tiny values:
+        estimate g, or a multiple. Results are float32.
     """
     given = _arrays.array("u", u), _arrays.array("f", f)
     u, f = _arrays.floats("u", given[0]), _arrays.floats("f", given[1])

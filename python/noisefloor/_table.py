@@ -253,10 +253,10 @@ class Table:
         if items not in (0, self._n):
             raise ValueError(f"the state has {items} items, this table {self._n}")
         try:
-            state, increment = rng
+            first, second = rng
         except (TypeError, ValueError):
             raise ValueError(f"rng is {rng!r}: it must be two integers") from None
-        rng = [_arrays.integer("rng", number, 0, 2**64 - 1) for number in (state, increment)]
+        rng = [_arrays.integer("rng", number, 0, 2**64 - 1) for number in (first, second)]
         with self._lock:
             status = _c.table_load(self._at, _c.data(self._memory), self._memory.nbytes, _c.data(saved), saved.nbytes)
             if status:

@@ -447,7 +447,7 @@ def cross_entropy_importance(logits: torch.Tensor, target: torch.Tensor) -> torc
     """The norm of the cross-entropy loss's derivative by the logits, || softmax - onehot ||, without a backward pass.
 
     Args:
-        logits: shape (batch, classes), finite: of others the norm is NaN.
+        logits: shape (batch, classes), no NaN and no infinity but -inf.
         target: integers of shape (batch,), 0 to classes - 1.
 
     Returns:

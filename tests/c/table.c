@@ -341,6 +341,7 @@ static void saving(void)
     CHECK_REFUSED(nf_table_load(&loaded, m2.start, m2.bytes, NULL, 0), NF_ERR_NULL, loaded);
     CHECK_REFUSED(nf_table_load(&loaded, m2.start, m2.bytes, "PK\3\4", 4), NF_ERR_FOREIGN, loaded);
     CHECK_REFUSED(nf_table_load(&loaded, m2.start, m2.bytes - 1, saved.start, len), NF_ERR_MEMORY, loaded);
+    CHECK_REFUSED(nf_table_load(&loaded, m2.start, SIZE_MAX, saved.start, len), NF_ERR_RANGE, loaded);
     CHECK_REFUSED(nf_table_load(&loaded, misaligned(m2.start), m2.bytes, saved.start, len), NF_ERR_ALIGNMENT, loaded);
     CHECK_STATUS(nf_table_load((nf_table *)misaligned(&loaded), m2.start, m2.bytes, saved.start, len),
                  NF_ERR_ALIGNMENT);

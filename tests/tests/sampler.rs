@@ -62,8 +62,8 @@ fn runs_are_nets() {
     }
 }
 
-/// All four numbers are nets together, of a t that grows slowly, and so are two of them, of a smaller one: of 2^m points
-/// those intervals of 2^(t - m) that count.
+/// All four numbers are nets together, of a t that grows slowly, and so are two of them, of a smaller one: of 2^m
+/// points those intervals of 2^(t - m) that count.
 #[test]
 fn four_numbers_are_nets() {
     // Of 4 to 65,536 points, and of 1,024 to 65,536.
@@ -391,8 +391,8 @@ fn places() {
     assert_eq!(HashSet::from([frame, s.scramble(1), s.domain(1)].map(|s| s.domain)).len(), 3);
 }
 
-/// The four numbers are functions of their own: the last two are not the first two of some sample, have their own digits
-/// beyond the ninth, and their own shifts. If values were
+/// The four numbers are functions of their own: the last two are not the first two of some sample, have their own
+/// digits beyond the ninth, and their own shifts. If values were
 /// random, fewer than 1e-12 for all limits together.
 #[test]
 fn numbers_have_their_own_values() {

@@ -6,7 +6,7 @@ use crate::status::*;
 use crate::{convert, fill};
 use noisefloor_core::tile::PixelSampler;
 
-/// As nf_sampler_fill(), of tiles' samplers. Those without a tile draw zeros. NF_ERR_RANGE also: see nf_check().
+/// As nf_sampler_fill(), of tiles' samplers, which nf_check() must not refuse. Those without a tile draw zeros.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_tile_sampler_fill(
     samplers: *const nf_tile_sampler,

@@ -20,8 +20,8 @@ pub const DEFAULT_BETA: f32 = 2.0;
 /// The weights of all techniques sum to one. Where every n_k p_k is 0, so that x cannot have been drawn, each is 0.
 ///
 /// # Errors
-/// [`Error::Length`] for slices of different lengths; [`Error::Range`] for lengths outside 1..=16, a technique that does
-/// not exist or a negative density; [`Error::NotFinite`] for a NaN.
+/// [`Error::Length`] for slices of different lengths; [`Error::Range`] for lengths outside 1..=16, a technique that
+/// does not exist or a negative density; [`Error::NotFinite`] for a NaN.
 ///
 /// ```
 /// // The point is three times as dense under the second technique; one sample of each.

@@ -61,7 +61,7 @@ impl Fields {
     }
 
     /// Adds what waits around all pixels, once there is enough.
-    pub(crate) fn spread_many(&mut self, weights: &Weights, energy: &Energy) {
+    pub(crate) fn spread_if_many(&mut self, weights: &Weights, energy: &Energy) {
         if self.changes.len() >= WAITING {
             self.spread(weights, energy);
         }

@@ -210,7 +210,7 @@ impl SamplerOptimizer {
                 self.offsets[pixel] = offsets;
                 fields.change(pixel, change);
             }
-            fields.spread_many(&self.weights, energy);
+            fields.spread_if_many(&self.weights, energy);
         }
         fields.spread(&self.weights, energy);
         self.border.remember(&energy.octaves);

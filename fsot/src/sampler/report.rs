@@ -24,7 +24,7 @@ impl SamplerReport {
     pub(crate) fn new(basis: &Basis, energy: &Energy, fields: &Fields, border: &Border, all: &[Places]) -> Self {
         let mut report = SamplerReport::default();
         for &octave in &energy.octaves {
-            let owns: Vec<f32> = all.par_iter().map(|places| alone(basis, places, 1 << octave)).collect();
+            let owns: Vec<f32> = all.par_iter().map(|places| own_energy(basis, places, 1 << octave)).collect();
             let raw = owns.iter().map(|own| f64::from(*own)).sum::<f64>() / all.len() as f64;
             let cross = |pixel: usize| -> f64 {
                 let (own, around) = (&fields.errors[pixel][octave], &fields.around[pixel][octave]);
@@ -42,7 +42,7 @@ impl SamplerReport {
 }
 
 /// The energy of a pixel's first points.
-fn alone(basis: &Basis, places: &Places, count: usize) -> f32 {
+fn own_energy(basis: &Basis, places: &Places, count: usize) -> f32 {
     let at = |axis: usize, i: usize| (f32::from(places[axis][i]) + 0.5) / 65536.0;
     let (mut alone, mut apart) = (0.0, 0.0);
     for i in 0..count {

@@ -67,7 +67,8 @@ pub(crate) struct About<'a, R> {
 ///
 /// # Errors
 /// As for [`estimate`](crate::control_variate::estimate) by this estimator, whose workspace it needs;
-/// [`Error::Length`] for another number of coefficients, [`Error::NotFinite`] for a start that is not finite. The coefficients are written only on success.
+/// [`Error::Length`] for another number of coefficients, [`Error::NotFinite`] for a start that is not finite. The
+/// coefficients are written only on success.
 ///
 /// ```
 /// use noisefloor::control_variate::{Config, Estimator, Samples, gradient_descent};

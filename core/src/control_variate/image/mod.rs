@@ -92,8 +92,9 @@ fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
 /// ratio, for skipping samples, for control functions, for estimators other than the robust, leave-one-out and K-fold
 /// ones, for the last if something is known, and for solvers other than `Auto` and the normal equations;
 /// [`Error::Range`] also for an image without pixels or with more than [`Image::MAX_PIXELS`], for windows and parts
-/// that [`Image`] does not allow, and for negative factors or integrals; [`Error::Length`] also for arrays of [`Image`];
-/// [`Error::NotFinite`] for factors, for what is known and for integrals that are not finite.
+/// that [`Image`] does not allow, for negative factors or integrals, and where only one of `known` and its integrals is
+/// there; [`Error::Length`] also for arrays of [`Image`]; [`Error::NotFinite`] for factors, for what is known and for
+/// integrals that are not finite.
 ///
 /// ```
 /// use noisefloor::control_variate::{Config, Image, Samples, estimate_image, image_workspace_len};

@@ -222,9 +222,9 @@ impl Image<'_> {
         let fits = |array: &[f32], len: Option<usize>| array.is_empty() || len == Some(array.len());
         let each = pixels.checked_mul(config.channels);
         let surfaces_fit = self.surfaces.is_empty() || self.surfaces.len() == pixels;
-        let known_fits = fits(self.known, Some(values)) && self.known.is_empty() == self.known_integrals.is_empty();
-        let lengths_fit = surfaces_fit && known_fits && fits(self.factors, each) && fits(self.known_integrals, each);
-        ensure(lengths_fit, Error::Length)?;
+        let known_fits = fits(self.known, Some(values)) && fits(self.known_integrals, each);
+        ensure(surfaces_fit && known_fits && fits(self.factors, each), Error::Length)?;
+        ensure(self.known.is_empty() == self.known_integrals.is_empty(), Error::Range)?;
         let values = [self.factors, self.known, self.known_integrals].into_iter().flatten();
         ensure(values.into_iter().all(|value| value.is_finite()), Error::NotFinite)?;
         ensure(self.factors.iter().chain(self.known_integrals).all(|&value| value >= 0.0), Error::Range)

@@ -212,8 +212,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     ///
     /// # Errors
     /// [`Error::Range`] for no items or a negative importance; [`Error::Length`] for another number of them;
-    /// [`Error::NotFinite`] for NaN or infinity; [`Error::NoSamples`] if all are 0; [`Error::Memory`] for less than [`importance_len`] and
-    /// [`sums_len`].
+    /// [`Error::NotFinite`] for NaN or infinity; [`Error::NoSamples`] if all are 0; [`Error::Memory`] for less than
+    /// [`importance_len`] and [`sums_len`].
     pub fn new(importance: I, sums: S, items: u32, values: Option<&[f32]>) -> Result<Self, Error> {
         let state = State { scale: 1.0, items, uniform_fraction: DEFAULT_UNIFORM_FRACTION };
         let mut table = Table::resume(importance, sums, state)?;

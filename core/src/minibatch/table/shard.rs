@@ -115,8 +115,8 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// All tables must have the same uniform fraction. How many items each process draws, [`allocate`] says.
     ///
     /// # Errors
-    /// [`Error::Length`] for another number of weights; [`Error::Range`] if `all` is less than this table alone, or 2^53
-    /// items; [`Error::NotFinite`]; [`Error::NoSamples`] if nothing can be drawn from any, or from this table and
+    /// [`Error::Length`] for another number of weights; [`Error::Range`] if `all` is less than this table alone, or has
+    /// 2^53 items; [`Error::NotFinite`]; [`Error::NoSamples`] if nothing can be drawn from any, or from this table and
     /// `index` is not empty. Where `all` dwarfs this table a weight may be infinite.
     #[inline]
     pub fn draw_shard(

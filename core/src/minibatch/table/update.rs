@@ -27,8 +27,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     /// there are.
     ///
     /// # Errors
-    /// These change nothing: [`Error::Length`] for different lengths; [`Error::Range`] for an item that does not exist, a
-    /// negative importance, or a momentum outside 0..=1; [`Error::NotFinite`].
+    /// These change nothing: [`Error::Length`] for different lengths; [`Error::Range`] for an item that does not exist,
+    /// a negative importance, or a momentum outside 0..=1; [`Error::NotFinite`].
     #[inline]
     pub fn update(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
         check_importances(importance)?;
