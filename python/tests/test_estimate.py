@@ -176,7 +176,7 @@ def test_lost_digits_are_told():
         assert told[0].filename == __file__
     with pytest.warns(RuntimeWarning, match="f is 10000000"):
         noisefloor.estimate(u, numpy.stack([f, f + 1e8]))
-    with pytest.warns(RuntimeWarning, match="no such small numbers: multiply by a constant"):
+    with pytest.warns(RuntimeWarning, match="few digits, or none, for such: multiply by a constant"):
         noisefloor.estimate(u, 1e-80 * f)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
