@@ -16,8 +16,9 @@ from .. import _c
 SIZE, BITS = 32, 6  # the table's pixels on a side, and the leading bits of a value that it is indexed by
 FRAMES, SCRAMBLED = 0x6672616D, 0x73637261
 FINE = 0x9E3779B9, 0xC13FA9A9
-# The matrix of the second two of four numbers.
+# The matrix of the second two of four numbers, and where further digits are added.
 COLUMNS = (0x80000000, 0x40000000, 0xA0000000, 0xD0000000, 0x68000000, 0xFC000000, 0x72000000, 0xAB000000, 0xCB800000)
+FURTHER = 6, 8, 9, 10, 16
 
 # By variant. Not an attribute of the samplers: recorded loops would take it for a part of their state.
 _tables = {}
@@ -87,6 +88,8 @@ def _move(domain, x, y):
 
 def _multiply(first):
     result = first & 0x007FFFFF
+    for places in FURTHER:
+        result ^= result << places
     for k, column in enumerate(COLUMNS):
         result ^= dr.select(((first >> (31 - k)) & 1) != 0, mi.UInt32(column), mi.UInt32(0))
     return result

@@ -63,9 +63,9 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     /// These change nothing: [`Error::Memory`] if there is no room; [`Error::Range`] for a negative importance;
     /// [`Error::NotFinite`].
     pub fn append(&mut self, importance: &[f32]) -> Result<(), Error> {
+        check_importances(importance)?;
         let room = (self.capacity() - self.state.items) as usize;
         ensure(importance.len() <= room, Error::Memory)?;
-        check_importances(importance)?;
         if importance.is_empty() {
             return Ok(());
         }
