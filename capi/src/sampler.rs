@@ -122,7 +122,7 @@ pub unsafe extern "C" fn nf_sampler_fill(
     len: usize,
 ) -> nf_status {
     // SAFETY: the caller's arrays, of the lengths that are stated.
-    unsafe { fill::fill((samplers, dims, domains), [width, height, samples], (u, len), to) }
+    unsafe { fill::fill((samplers, dims, domains), [width, height, samples], (u, len), |_| Ok(()), to) }
 }
 
 fn to(&nf_sampler { domain, index, x, y, flags }: &nf_sampler) -> Sampler {

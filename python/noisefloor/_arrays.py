@@ -59,10 +59,12 @@ def warn_of_lost_digits(name, view, axis=None):
     if 0 < largest < 2**-126:
         words = "which has few digits, or none, for such: multiply by a constant, and divide the mean"
     elif math.isfinite(largest):
-        each = view.reshape(1, -1) if axis is None else numpy.moveaxis(view, axis, -1)
-        # Where two are apart, all are.
-        each = each[_are_near(*(each[..., k].astype(numpy.float64) for k in (0, -1)))]
-        low, high = (of(each, axis=-1).astype(numpy.float64) for of in (numpy.min, numpy.max))
+        low, high = numpy.array([least]), numpy.array([most])
+        if axis is not None:
+            each = numpy.moveaxis(view, axis, -1)
+            # Where two are apart, all are.
+            each = each[_are_near(*(each[..., k].astype(numpy.float64) for k in (0, -1)))]
+            low, high = (of(each, axis=-1).astype(numpy.float64) for of in (numpy.min, numpy.max))
         lost = _are_near(low, high) & (low < high)
         if lost.any():
             least, most = low[numpy.argmax(lost)], high[numpy.argmax(lost)]

@@ -392,8 +392,7 @@ fn places() {
 }
 
 /// The four numbers are functions of their own: the last two are not the first two of some sample, have their own
-/// digits beyond the ninth, and their own shifts. If values were
-/// random, fewer than 1e-12 for all limits together.
+/// digits beyond the ninth, and their own shifts. If values were random, fewer than 1e-12 for all limits together.
 #[test]
 fn numbers_have_their_own_values() {
     let bits = |s: Sampler| s.draw::<4>().map(|u| (u * 16_777_216.0) as u32);

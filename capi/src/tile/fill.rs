@@ -2,8 +2,8 @@
 
 use super::sampler::{check_sampler, nf_tile_sampler, of};
 use super::view::core_view;
+use crate::fill;
 use crate::status::*;
-use crate::{convert, fill};
 use noisefloor_core::tile::PixelSampler;
 
 /// As nf_sampler_fill(), of tiles' samplers, which nf_check() must not refuse. Those without a tile draw zeros.
@@ -20,11 +20,8 @@ pub unsafe extern "C" fn nf_tile_sampler_fill(
 ) -> nf_status {
     // SAFETY: the caller's arrays, of the lengths that are stated, and samplers of live tiles, if of any.
     unsafe {
-        let all = convert::slice(samplers, domains);
-        match all.and_then(|all| Ok(all.iter().try_for_each(|sampler| check_sampler(sampler))?)) {
-            Ok(()) => fill::fill((samplers, dims, domains), [width, height, samples], (u, len), Live),
-            Err(status) => status,
-        }
+        let check = |sampler| check_sampler(sampler);
+        fill::fill((samplers, dims, domains), [width, height, samples], (u, len), check, Live)
     }
 }
 

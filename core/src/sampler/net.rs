@@ -74,7 +74,7 @@ fn pair(x: u32, y: u32, first: u32) -> [u32; 2] {
 /// Its first nine columns were found by search: of points in four dimensions the first 4 to 512 are (t, m, 4)-nets, t
 /// from 1 to 3, and of such matrices this one has the best projections on two of the four. Further digits are added to
 /// those some places before them, in five steps: these have a small error of smooth functions, and projections on two
-/// whose t is at most 4 up to 2^20 points.
+/// whose t is at most 4 up to 2^20 points. `noisefloor_sampler.h` and Python's sampler for Mitsuba have them, too.
 #[inline]
 fn second(first: u32) -> u32 {
     let mut further = first & 0x007f_ffff;
