@@ -167,18 +167,23 @@ static void call_sampler_4(void)
 
 static void prepare_inlined(void) { entries = nf_sampler_table(); }
 
+/* A sample that the compiler does not know: it would leave out a part. */
+static volatile uint32_t inlined = 0;
+
 static void call_inlined(void)
 {
+    const uint32_t first = inlined;
     for (uint32_t i = 0; i < 64; ++i) {
-        const nfs_floats drawn = nfs_draw2(nfs_pixel(i, 3 * i, 0, i % 4));
+        const nfs_floats drawn = nfs_draw2(nfs_pixel(i, 3 * i, 0, first + i % 4));
         out[i % 2] = drawn.x + drawn.y;
     }
 }
 
 static void call_inlined_4(void)
 {
+    const uint32_t first = inlined;
     for (uint32_t i = 0; i < 64; ++i) {
-        const nfs_floats drawn = nfs_draw4(nfs_domain(nfs_pixel(i, 3 * i, 0, 64 + i), i));
+        const nfs_floats drawn = nfs_draw4(nfs_domain(nfs_pixel(i, 3 * i, 0, first + 64 + i), i));
         out[i % 2] = drawn.x + drawn.y + drawn.z + drawn.w;
     }
 }

@@ -69,9 +69,12 @@ pub unsafe extern "C" fn nf_sampler_draw(sampler: nf_sampler, dims: u32, u: *mut
     }
     // SAFETY: as above.
     let Ok(u) = (unsafe { convert::rooms(u, 2) }) else { return };
-    // A pixel's own numbers without looking at domain and flags again.
-    let own = nf_sampler { domain: 0, flags: 0, ..sampler };
-    if sampler.domain | sampler.flags == 0 { write::<2>(&own, u) } else { write::<2>(&sampler, u) }
+    // A pixel's own numbers, and a domain's, without looking at domain and flags again.
+    match (sampler.flags, sampler.domain) {
+        (0, 0) => write::<2>(&nf_sampler { domain: 0, flags: 0, ..sampler }, u),
+        (0, _) => write::<2>(&nf_sampler { flags: 0, ..sampler }, u),
+        _ => write::<2>(&sampler, u),
+    }
 }
 
 /// # Safety

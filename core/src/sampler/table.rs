@@ -27,9 +27,23 @@ pub const fn net(index: u32) -> [u32; 2] {
     [first, pascal(first)]
 }
 
-/// The second of these by the first.
+/// The second of these by the first: by table where a pixel has no more than 256 samples.
 #[inline]
 pub(super) const fn pascal(first: u32) -> u32 {
+    if first << 8 == 0 { (PASCAL[(first >> 24) as usize] as u32) << 24 } else { product(first) }
+}
+
+static PASCAL: [u8; 256] = {
+    let (mut all, mut first) = ([0; 256], 0);
+    while first < 256 {
+        all[first as usize] = (product(first << 24) >> 24) as u8;
+        first += 1;
+    }
+    all
+};
+
+/// Pascal's matrix times the digits.
+const fn product(first: u32) -> u32 {
     let mut second = first ^ first << 16;
     second ^= (second & 0x00ff_00ff) << 8;
     second ^= (second & 0x0f0f_0f0f) << 4;

@@ -52,7 +52,7 @@ public:
     }
 
     void advance() override {
-        ++m_root.index;
+        m_root.order = nfs_reverse(nfs_reverse(m_root.order) + 1);
         m_dimension = 0;
     }
 

@@ -31,16 +31,17 @@ _films = weakref.WeakKeyDictionary()
 def table() -> "mi.UInt32":
     """The numbers that samplers read, on the variant's device: state of a function that `drjit.freeze` records.
 
-    First the library's, then the same for samples of which the first digits are all: these say both coordinates'
-    leading digits, so that what is for either is in one place.
+    First the library's, then one for samples of which the first digits are all: of these it has both coordinates'
+    leading digits, in one place.
     """
     variant = mi.variant()
     if variant not in _tables:
         numbers = ctypes.cast(_c.sampler_table(), ctypes.POINTER(ctypes.c_uint32))
         entries = numpy.ctypeslib.as_array(numbers, (SIZE * SIZE, 1 << BITS))
-        second = _pascal(numpy.arange(1 << BITS, dtype=numpy.uint32) << (32 - BITS)) >> (32 - BITS)
-        both = (entries & 0xFFFF) | (entries[:, second] & 0xFFFF0000)
-        _tables[variant] = mi.UInt32(numpy.concatenate([entries, both], None))
+        first = numpy.arange(1 << BITS, dtype=numpy.uint32) << (32 - BITS)
+        second = _pascal(first)
+        leading = ((first >> 16) ^ (entries & 0xFFFF)) | (second ^ (entries[:, second >> (32 - BITS)] & 0xFFFF0000))
+        _tables[variant] = mi.UInt32(numpy.concatenate([entries, leading], None))
         dr.eval(_tables[variant])
     return _tables[variant]
 
@@ -103,15 +104,15 @@ def _pascal(first):
 
 
 def _pair(pixel, first, few):
-    second = _pascal(first)
-    begin = SIZE * SIZE << BITS if few else 0
-
-    def entry(value):
+    def entry(value, begin=0):
         return dr.gather(mi.UInt32, table(), begin | (pixel << BITS) | (value >> (32 - BITS)))
 
-    of_first = entry(first)
-    of_second = of_first if few else entry(second)
-    values = first ^ (of_first << 16), second ^ (of_second & 0xFFFF0000)
+    if few:
+        leading = entry(first, SIZE * SIZE << BITS)
+        values = leading << 16, leading & 0xFFFF0000
+    else:
+        second = _pascal(first)
+        values = first ^ (entry(first) << 16), second ^ (entry(second) & 0xFFFF0000)
     return [v ^ ((((pixel << 8) | (v >> 24)) * factor) >> 8) for v, factor in zip(values, FINE)]
 
 
