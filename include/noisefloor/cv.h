@@ -159,7 +159,7 @@ typedef struct nf_cv_image {
     // see the same; pixels near 0 beside others are better kept apart by `surfaces`.
     const float *factors;
     // The pixels that input arrays hold, in all frames, and that count, at most 2^30 - 1; all zero: all of the image.
-    // Without `wanted` whole windows.
+    // Without `wanted` whole windows; else only those that `wanted` needs are read.
     nf_cv_rectangle given;
     // The pixels to estimate, in all frames, of which every window must be given whole: see nf_cv_image_needed(). All
     // zero: all that are given. Parts that are estimated apart, by threads say, have the bits of the whole.
@@ -263,7 +263,7 @@ typedef struct nf_recommendation {
     // continued as a Sobol sequence.
     uint32_t tile_samples;
     uint32_t tile_dims; // The same: its dims.
-    // What to expect: mean squared error over that of the plain mean of independent samples (docs/choosing.md).
+    // Mean squared error over that of the mean of independent samples, of smooth formulas: frames keep far more.
     float error;
     float filtered_error; // The same of the image filtered by a Gaussian of 2.1 pixels.
     // Nanoseconds that the method takes for each sample on the machine of the report: of NF_METHOD_SHARED three

@@ -8,6 +8,7 @@ use crate::error::{Error, ensure};
 use crate::lanes::{LANES, Lanes};
 use crate::matrix::{first, from, halves_mut, row_at};
 use crate::real::Real;
+use core::ops::Range;
 
 /// Rec. 709 luminance of linear RGB.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
@@ -89,6 +90,18 @@ impl<'a> Reader<'a> {
             luminance: config.color == Color::LuminanceRatio,
             skip: config.non_finite == NonFinite::Skip,
         })
+    }
+
+    /// Some of the samples, one after another.
+    pub(crate) fn part(&self, samples: Range<usize>) -> Self {
+        let rows = |values: &'a [f32], width: usize| {
+            let rest = from(values, samples.start * width);
+            // The last row of `u` may end early.
+            first(rest, rest.len().min(samples.len() * width))
+        };
+        let Samples { u, f, controls, control_integrals } = self.samples;
+        let (u, f, controls) = (rows(u, self.stride), rows(f, self.inputs), rows(controls, self.controls));
+        Self { samples: Samples { u, f, controls, control_integrals }, n: samples.len(), ..*self }
     }
 
     /// How many samples the arrays hold.

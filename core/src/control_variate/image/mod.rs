@@ -139,7 +139,10 @@ pub fn estimate_image_by<P: Processor>(
     image.check(config, call.pixels, samples.f.len())?;
     let n = reader.len() / call.pixels.max(1);
     ensure(n * call.pixels == reader.len(), Error::Length)?;
-    reader.check()?;
+    for pixels in call.windows.rows() {
+        image.check_values(config.channels, n, pixels.clone())?;
+        reader.part(pixels.start * n..pixels.end * n).check()?;
+    }
     let call = Call { n, reader, ..call };
     let mut arena = Arena::new(workspace, call.workspace_len())?;
     call.run::<P>(&mut arena, out);

@@ -2,6 +2,8 @@
 
 use crate::control_variate::Config;
 use crate::error::{Error, Invalid, ensure, rule};
+use crate::matrix::part;
+use core::ops::Range;
 
 /// The pixels' axes: x, y and frames.
 pub(super) const MAX_AXES: usize = 3;
@@ -52,7 +54,7 @@ pub struct Image<'a> {
     /// results are numbered among those wanted.
     pub given: Rectangle,
     /// The pixels that are estimated; all that are given, if all four numbers are 0. Every window that has one of them
-    /// must be given whole: [`Image::needed`].
+    /// must be given whole: [`Image::needed`]. No others are read.
     pub wanted: Rectangle,
 }
 
@@ -167,7 +169,7 @@ impl Image<'_> {
     /// ```
     pub fn needed(&self) -> Result<Rectangle, Error> {
         let windows = Self { given: Rectangle::default(), ..*self }.windows()?;
-        Ok(if windows.is_ordered { windows.needed() } else { Rectangle::default() })
+        Ok(if windows.is_ordered { windows.needed } else { Rectangle::default() })
     }
 
     /// Where its windows lie.
@@ -199,10 +201,12 @@ impl Image<'_> {
         rule(given.is_within(&all), c"given must lie in the image, and have pixels")?;
         rule(wanted.is_within(&given), c"wanted must lie in what is given, and have pixels")?;
         let (extent, is_ordered) = ([width, height, frames], !self.unordered);
-        let mut windows = Windows { extent, stride, image, is_ordered, given, wanted, used: Rectangle::default() };
+        let (used, needed) = (Rectangle::default(), Rectangle::default());
+        let mut windows = Windows { extent, stride, image, is_ordered, given, wanted, used, needed };
         windows.used = windows.with_pixels(&wanted);
-        let is_enough = windows.needed().is_within(&given);
-        rule(is_enough, c"given must hold the windows of wanted whole: see nf_cv_image_needed()").map(|()| windows)
+        windows.needed = windows.pixels_of_used();
+        rule(windows.needed.is_within(&given), c"given must hold the windows of wanted whole: see nf_cv_image_needed()")
+            .map(|()| windows)
     }
 
     pub(super) fn frames(&self) -> usize {
@@ -217,17 +221,23 @@ impl Image<'_> {
         pixels.filter(|&pixels| pixels <= Self::MAX_PIXELS as usize).ok_or(MOST)
     }
 
-    /// Checks the arrays, for so many pixels and numbers of samples.
+    /// Checks the arrays' lengths, for so many pixels and numbers of samples.
     pub(super) fn check(&self, config: &Config, pixels: usize, values: usize) -> Result<(), Error> {
         let fits = |array: &[f32], len: Option<usize>| array.is_empty() || len == Some(array.len());
         let each = pixels.checked_mul(config.channels);
         let surfaces_fit = self.surfaces.is_empty() || self.surfaces.len() == pixels;
         let known_fits = fits(self.known, Some(values)) && fits(self.known_integrals, each);
         ensure(surfaces_fit && known_fits && fits(self.factors, each), Error::Length)?;
-        ensure(self.known.is_empty() == self.known_integrals.is_empty(), Error::Range)?;
-        let values = [self.factors, self.known, self.known_integrals].into_iter().flatten();
-        ensure(values.into_iter().all(|value| value.is_finite()), Error::NotFinite)?;
-        ensure(self.factors.iter().chain(self.known_integrals).all(|&value| value >= 0.0), Error::Range)
+        ensure(self.known.is_empty() == self.known_integrals.is_empty(), Error::Range)
+    }
+
+    /// Checks what the arrays say of some pixels, of `n` samples each.
+    pub(super) fn check_values(&self, channels: usize, n: usize, pixels: Range<usize>) -> Result<(), Error> {
+        let rows = |values, width| part(values, pixels.start * width, pixels.len() * width);
+        let [factors, integrals] = [self.factors, self.known_integrals].map(|values| rows(values, channels));
+        let mut values = [factors, integrals, rows(self.known, n * channels)].into_iter().flatten();
+        ensure(values.all(|value| value.is_finite()), Error::NotFinite)?;
+        ensure(factors.iter().chain(integrals).all(|&value| value >= 0.0), Error::Range)
     }
 }
 
@@ -246,6 +256,8 @@ pub(super) struct Windows {
     pub(super) wanted: Rectangle,
     /// Columns and rows of windows that have any of those.
     used: Rectangle,
+    /// The pixels of all windows that are used: no others are read.
+    pub(super) needed: Rectangle,
 }
 
 impl Windows {
@@ -299,8 +311,7 @@ impl Windows {
         Rectangle { x, y, width, height }
     }
 
-    /// The pixels of all windows that are used.
-    fn needed(&self) -> Rectangle {
+    fn pixels_of_used(&self) -> Rectangle {
         let [across, down] = self.counts();
         let [left, top] = self.window(0, 0);
         let [right, bottom] = self.window(across.saturating_sub(1), down.saturating_sub(1));
@@ -318,6 +329,14 @@ impl Windows {
     pub(super) fn window(&self, column: usize, row: usize) -> [usize; 2] {
         let [[width, ..], [across, ..]] = [self.image, self.extent];
         [((self.used.x + column) * self.stride).min(width.saturating_sub(across)), self.top(row)]
+    }
+
+    /// The rows of pixels that are read, by the pixels' numbers.
+    pub(super) fn rows(&self) -> impl Iterator<Item = Range<usize>> {
+        let Rectangle { x, y, width, height } = self.needed;
+        (0..self.frames())
+            .flat_map(move |frame| (y..y + height).map(move |y| self.number(x, y, frame)))
+            .map(move |first| first..first + width)
     }
 
     pub(super) fn number(&self, x: usize, y: usize, frame: usize) -> usize {

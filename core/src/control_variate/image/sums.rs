@@ -86,7 +86,7 @@ impl<'a> Band<'a> {
 impl Call<'_> {
     /// Groups of eight in a row of pixels.
     fn eights(&self) -> usize {
-        self.windows.given.width.div_ceil(LANES)
+        self.windows.needed.width.div_ceil(LANES)
     }
 
     /// Adds the groups' corrections to the sums of their pixels, in the order of the windows.
@@ -101,7 +101,7 @@ impl Call<'_> {
         for group in (0..groups.count).map(|index| groups.numbered(index)).filter(|group| all || group.has_edges) {
             let Some(([gain, has_error], errors)) = groups.found(&group).0.split_first_chunk() else { continue };
             let window = self.window(group.window);
-            let (left, top) = (window[0] - self.windows.given.x, window[1] % band.rows.max(1));
+            let (left, top) = (window[0] - self.windows.needed.x, window[1] % band.rows.max(1));
             let members = groups.members(&group);
             let corrections = from(groups.corrections, group.start * channels);
             for begin in (0..group.len).step_by(LANES) {
@@ -177,16 +177,17 @@ impl Call<'_> {
     /// Writes a row of pixels, and empties its sums.
     #[inline(always)]
     pub(super) fn write(&self, (frame, y): (usize, usize), band: &mut Band<'_>, out: &mut dyn FnMut(usize, Estimate)) {
-        let (given, wanted) = (self.windows.given, self.windows.wanted);
+        let (needed, wanted) = (self.windows.needed, self.windows.wanted);
         let (len, samples) = (sums_len(self.config.channels), self.n.min(u32::MAX as usize) as u32);
         let row = frame * band.rows + y % band.rows.max(1);
         let sums = row_at_mut(band.sums, self.eights() * len, row);
         for (eight, sums) in rows_mut(sums, len).enumerate() {
-            let column = given.x + eight * LANES;
+            let column = needed.x + eight * LANES;
             if y >= wanted.y && column < wanted.x + wanted.width && wanted.x < column + LANES {
                 let begin = (frame * wanted.height + y - wanted.y) * wanted.width;
                 let mut estimates = [Estimate { mean: [0.0; 4], std_error: [0.0; 4], samples, gain: 1.0 }; LANES];
-                self.estimate(self.windows.number(column, y, frame), sums, &mut estimates);
+                let there = LANES.min(needed.x + needed.width - column);
+                self.estimate((self.windows.number(column, y, frame), there), sums, &mut estimates);
                 for (lane, &estimate) in estimates.iter().enumerate() {
                     let x = (column + lane).wrapping_sub(wanted.x);
                     if x < wanted.width {
@@ -198,9 +199,9 @@ impl Call<'_> {
         }
     }
 
-    /// Of eight pixels.
+    /// Of eight pixels from one on, as many of which are there.
     #[inline(always)]
-    fn estimate(&self, pixel: usize, sums: &[Eight], out: &mut [Estimate; LANES]) {
+    fn estimate(&self, pixels: (usize, usize), sums: &[Eight], out: &mut [Estimate; LANES]) {
         let Some(([weight, error_weight, gain], each)) = sums.split_first_chunk() else { return };
         let (by_groups, likely) = (self.error_is_the_groups(), most_likely(self.n));
         // Without a weight all sums are zero.
@@ -210,12 +211,12 @@ impl Call<'_> {
         for (channel, [correction, spread]) in each.as_chunks().0.iter().enumerate() {
             let correction = lanes::zip(&wide(correction), &over, |correction, over| correction * over);
             let spread = lanes::zip(&wide(spread), &error_over, |spread, over| spread * over);
-            let first = self.given(pixel, 0, channel);
+            let first = self.given(pixels, 0, channel);
             let (mut plain, mut variance) = (first, [f64::INFINITY; LANES]);
             if self.n > 1 {
                 let [mut total, mut square] = [[0.0; LANES]; 2];
                 for sample in 1..self.n {
-                    let value = lanes::zip(&self.given(pixel, sample, channel), &first, |value, first| value - first);
+                    let value = lanes::zip(&self.given(pixels, sample, channel), &first, |value, first| value - first);
                     total = lanes::zip(&total, &value, |total, value| total + value);
                     square = lanes::plus_product(square, value, value);
                     lanes::keep_together();
@@ -257,10 +258,10 @@ impl Call<'_> {
         }
     }
 
-    /// A channel of a sample of each pixel, as it was given.
-    fn given(&self, pixel: usize, sample: usize, channel: usize) -> Wide {
-        let channels = self.config.channels;
-        let values = from(self.reader.samples.f, (pixel * self.n + sample) * channels + channel);
-        wide(&every(self.n * channels, values))
+    /// A channel of a sample of each pixel, as it was given; 0 of those that are not there.
+    fn given(&self, (pixel, there): (usize, usize), sample: usize, channel: usize) -> Wide {
+        let (channels, step) = (self.config.channels, self.n * self.config.channels);
+        let begin = (pixel * self.n + sample) * channels + channel;
+        wide(&every(step, part(self.reader.samples.f, begin, (there.max(1) - 1) * step + 1)))
     }
 }
