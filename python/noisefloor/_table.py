@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
 import threading
+import weakref
 from collections.abc import Mapping
 from typing import Any, Literal, SupportsIndex
 
@@ -15,16 +17,40 @@ from . import _arrays, _c
 #: Larger batches, which take longer anyway, have arrays of their own.
 ROOM = 4096
 
+#: All tables, so that none is in use where a process forks; and those that wait for that.
+_tables = weakref.WeakSet()
+_held: list[Table] = []
+_forking = threading.RLock()
+
+
+def _hold():
+    _forking.acquire()
+    _held.extend(_tables)
+    for table in _held:
+        table._lock.acquire()
+
+
+def _release():
+    for table in _held:
+        table._lock.release()
+    _held.clear()
+    _forking.release()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(before=_hold, after_in_parent=_release, after_in_child=_release)
+
 
 class Table:
     """The importances of a data set's items, from which minibatches are drawn.
 
     Item i is drawn with probability p_i = (1 - d) q_i / sum(q) + d / n, where q_i is its importance and d the uniform
     fraction. Its weight is 1 / (n p_i), but for "distinct": the mean of weight times gradient estimates the gradient of
-    the mean loss without bias. A draw and an update take time of O(log n). 4.6 bytes per item.
+    the mean loss without bias. A draw and an update take time of O(log n), but for updates that change the sum a
+    millionfold, which take O(n). 4.6 bytes for each item that there is room for.
 
-    Any number of threads may use one table, and a signal's handler may call `state_dict` alone; a process forked while
-    another thread uses it may not. Tables can be pickled and copied; a copy draws the same minibatches.
+    Any number of threads may use one table, and a signal's handler may call `state_dict` alone. Tables can be pickled
+    and copied. A copy draws the same minibatches, as that in a forked process does: see `reseed`.
 
     Args:
         n: how many items, 1 to 2**32 - 1.
@@ -33,9 +59,19 @@ class Table:
             but of "distinct".
         seed: of the table's own random numbers, 0 to 2**64 - 1. The same by default, so that a program does the same
             each time: tables that are to differ need seeds that do.
+        capacity: for how many items there is room, with those that `append` adds; None is as many as there are. Beyond
+            it `append` makes twice as much room.
     """
 
-    def __init__(self, n: int, *, importance: Any = None, uniform_fraction: float = 0.2, seed: int = 0) -> None:
+    def __init__(
+        self,
+        n: int,
+        *,
+        importance: Any = None,
+        uniform_fraction: float = 0.2,
+        seed: int = 0,
+        capacity: int | None = None,
+    ) -> None:
         n = _arrays.integer("n", n, 1, _arrays.MAX_U32)
         fraction = _arrays.number("uniform_fraction", uniform_fraction, 0, 1)
         seed = _arrays.integer("seed", seed, 0, 2**64 - 1)
@@ -44,7 +80,7 @@ class Table:
             importance = _arrays.array("importance", importance)
             values = _arrays.floats("importance", importance)
             _arrays.check_shape("importance", values, (n,), "a number for each item")
-        self._prepare(n)
+        self._prepare(n, n if capacity is None else _arrays.integer("capacity", capacity, n, _arrays.MAX_U32))
         status = _c.table_init(self._at, _c.data(self._memory), self._memory.nbytes, n, _c.data(values))
         if status:
             _arrays.check_positive("importance", importance)
@@ -52,15 +88,22 @@ class Table:
         self._table.uniform_fraction = fraction
         _c.rng_seed(self._rng_at, seed)
 
-    def _prepare(self, n):
-        """Memory for n items, and none yet for batches."""
-        self._n = n
+    def reseed(self, seed: int) -> None:
+        """Begins the table's own random numbers anew, from 0 to 2**64 - 1: a copy then draws minibatches of its own."""
+        seed = _arrays.integer("seed", seed, 0, 2**64 - 1)
+        with self._lock:
+            _c.rng_seed(self._rng_at, seed)
+
+    def _prepare(self, n, capacity):
+        """Memory for as many items, of which n are there."""
+        self._n, self._capacity = n, capacity
         self._table, self._rng, self._lock = _c.Table(), _c.Rng(), threading.RLock()
         self._at, self._rng_at = _c.address(self._table), _c.address(self._rng)
-        self._memory = _c.workspace(_c.table_size(n))
+        self._memory = _c.workspace(_c.table_size(capacity))
         # Where the library reads and writes batches, so that their addresses need not be asked for each time.
         self._index, self._value = numpy.empty(ROOM, numpy.uint32), numpy.empty(ROOM, numpy.float32)
         self._index_at, self._value_at = _c.data(self._index), _c.data(self._value)
+        _tables.add(self)
 
     def __len__(self) -> int:
         return self._n
@@ -149,14 +192,16 @@ class Table:
 
         Args:
             index: integers, 0 to n - 1, of shape (batch,) or any other. An item that comes twice is changed twice.
-            importance: of index's shape, finite and at least 0: the norm of each item's gradient, say. Only ratios
-                count, once no item has the 1 any more that it begins with.
+            importance: of index's shape, or one number for all; finite and at least 0: the norm of each item's
+                gradient, say. Only ratios count, once no item has the 1 any more that it begins with.
             momentum: 0 to 1. 0 forgets the old value: for an item's first, where that 1 stands for nothing.
         """
         if type(index) is not numpy.ndarray:
             index = _arrays.array("index", index)
         if type(importance) is not numpy.ndarray:
             importance = _arrays.array("importance", importance)
+        if importance.ndim == 0:
+            importance = numpy.full(index.shape, importance)
         given = index, importance
         if index.dtype.char != "l":
             index = _arrays.integers("index", index, self._n - 1).astype(numpy.int64)
@@ -187,27 +232,34 @@ class Table:
         """Adds items behind the last: of a replay buffer, say.
 
         Args:
-            importance: shape (count,), finite and at least 0. Items of the largest so far are soon drawn, and updated.
+            importance: shape (count,), or a number for one item; finite and at least 0. Items of the largest so far
+                are soon drawn, and updated.
         """
-        importance = _arrays.array("importance", importance)
+        importance = numpy.atleast_1d(_arrays.array("importance", importance))
         _arrays.check_shape("importance", importance, (importance.size,), "a number for each new item")
         with self._lock:
             n = _arrays.integer("n", self._n + importance.size, 1, _arrays.MAX_U32)
             values = _arrays.floats("importance", importance)
             status = _c.table_append(self._at, _c.data(values), values.size)
             if status == _c.CONSTANTS["NF_ERR_MEMORY"]:
-                saved = self._saved()
                 # Twice as many, so that items are rarely moved.
-                memory = _c.workspace(_c.table_size(min(max(n, 2 * self._n), _arrays.MAX_U32)))
-                status = _c.table_load(self._at, _c.data(memory), memory.nbytes, _c.data(saved), saved.nbytes)
+                status = self._move(self._saved(), min(max(n, 2 * self._n), _arrays.MAX_U32))
                 assert not status, _c.message(status)
-                self._memory = memory
                 status = _c.table_append(self._at, _c.data(values), values.size)
             if not status:
                 self._n = n
                 return
         _arrays.check_positive("importance", importance)
         raise ValueError(_c.message(status))
+
+    def _move(self, saved, capacity):
+        """Takes what was saved into memory for as many items, if these are more than there is room for."""
+        capacity = max(capacity, self._capacity)
+        memory = self._memory if capacity == self._capacity else _c.workspace(_c.table_size(capacity))
+        status = _c.table_load(self._at, _c.data(memory), memory.nbytes, _c.data(saved), saved.nbytes)
+        if not status:
+            self._memory, self._capacity = memory, capacity
+        return status
 
     def _fill(self, importance):
         """All items get this importance, above 0 as float32."""
@@ -216,6 +268,14 @@ class Table:
             status = _c.table_init(self._at, _c.data(self._memory), self._memory.nbytes, self._n, _c.data(values))
             assert not status, _c.message(status)
             self._table.uniform_fraction = fraction
+
+    def importances(self, index: Any = None) -> NDArray[numpy.float32]:
+        """The importance of each of these items, float32, of index's shape; of all items for None."""
+        with self._lock:
+            if index is not None:
+                index = _arrays.integers("index", index, self._n - 1)
+            all_of_them = _c.floats_at(self._table.importance, self._n)
+            return all_of_them.copy() if index is None else all_of_them[index]
 
     def probabilities(self, index: Any = None) -> NDArray[numpy.float32]:
         """The probability of drawing each of these items, float32, of index's shape; of all items for None."""
@@ -231,7 +291,7 @@ class Table:
 
     def state_dict(self) -> dict[str, Any]:
         """All that decides what is drawn next: "table", uint8 of shape (bytes,), and "rng", two ints. The same bytes on
-        every machine."""
+        every machine. For `torch.load` with `weights_only=True` make "table" a tensor, by `torch.from_numpy`."""
         with self._lock:
             return {"table": self._saved(), "rng": (self._rng.state, self._rng.increment)}
 
@@ -242,7 +302,11 @@ class Table:
         return saved
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Becomes the table that `state_dict` saw, of as many items."""
+        """Becomes the table that `state_dict` saw, with as many items."""
+        self._load(state)
+
+    def _load(self, state, n=None):
+        """With `n` the state must have as many items."""
         saved, rng = _arrays.parts(state, "table", "rng")
         saved = _arrays.array("table", saved)
         if saved.dtype != numpy.uint8:
@@ -250,27 +314,29 @@ class Table:
         saved = numpy.ascontiguousarray(saved)
         # What is no table at all, the library says.
         items = int.from_bytes(saved[12:16].tobytes(), "little") if saved[:8].tobytes() == b"nf_table" else 0
-        if items not in (0, self._n):
-            raise ValueError(f"the state has {items} items, this table {self._n}")
+        if n is not None and items not in (0, n):
+            raise ValueError(f"the state has {items} items, this table {n}")
         try:
             first, second = rng
         except (TypeError, ValueError):
             raise ValueError(f"rng is {rng!r}: it must be two integers") from None
         rng = [_arrays.integer("rng", number, 0, 2**64 - 1) for number in (first, second)]
         with self._lock:
-            status = _c.table_load(self._at, _c.data(self._memory), self._memory.nbytes, _c.data(saved), saved.nbytes)
+            # A damaged number of items asks for no more memory than the state's bytes could fill.
+            status = self._move(saved, min(items, saved.nbytes // 4))
             if status:
                 raise ValueError(f"the state's table, {saved.nbytes} bytes: {_c.message(status)}")
+            self._n = self._table.items
             self._rng.state, self._rng.increment = rng
 
     def __getstate__(self):
         others = {name: value for name, value in vars(self).items() if name not in OWN}
-        return {"n": self._n, "others": others, **self.state_dict()}
+        return {"capacity": self._capacity, "others": others, **self.state_dict()}
 
     def __setstate__(self, state):
-        n, others = _arrays.parts(state, "n", "others")
+        capacity, others = _arrays.parts(state, "capacity", "others")
         vars(self).update(others)
-        self._prepare(n)
+        self._prepare(0, capacity)
         self.load_state_dict(state)
 
 

@@ -413,10 +413,10 @@ class ImportanceBatchSampler(Sampler):
         if len(tables) > 1:  # one table refuses by itself; of several none may have been changed before
             spare = Table(self._n)
             for table in tables:
-                spare.load_state_dict(table)
+                spare._load(table, self._n)
         for own, table in zip(self._tables, tables):
             fraction = own.uniform_fraction
-            own.load_state_dict(table)
+            own._load(table, self._n)
             own.uniform_fraction = fraction
         self._seed, self.epoch, self._fresh, self._drawn, self._step = seed, epoch, list(fresh), drawn, step
         self._replay, self._last = replay, None

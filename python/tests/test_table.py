@@ -4,8 +4,10 @@ import copy
 import json
 import math
 import multiprocessing
+import os
 import pathlib
 import pickle
+import signal
 import subprocess
 import sys
 import threading
@@ -132,13 +134,64 @@ def test_grown_tables_are_those_made_at_once(counts, fraction):
     assert same(grown, expected)
 
 
+def test_a_state_brings_its_items():
+    grown = noisefloor.Table(1, capacity=50, seed=3)
+    memory = grown._memory
+    grown.append(2.0)
+    grown.append(numpy.arange(40))
+    assert len(grown) == 42 and grown._memory is memory
+    assert numpy.array_equal(grown.importances(), [1, 2, *range(40)])
+    assert numpy.array_equal(grown.importances([[1, 41]]), [[2, 39]])
+    for other in (noisefloor.Table(1), noisefloor.Table(1000), copy.deepcopy(grown)):
+        other.load_state_dict(grown.state_dict())
+        assert len(other) == 42 and numpy.array_equal(other.importances(), grown.importances())
+        other.append(7.0)
+        other.update([3, 42], 5.0, momentum=0)
+        assert numpy.array_equal(other.importances([3, 42, 4]), [5, 5, 2])
+    assert pickle.loads(pickle.dumps(grown))._capacity == 50
+
+
+def test_a_copy_that_is_seeded_draws_its_own():
+    table = noisefloor.Table(1000, seed=1)
+    other = copy.copy(table)
+    other.reseed(2)
+    assert not numpy.array_equal(other.draw(20)[0], table.draw(20)[0])
+    other.reseed(1)
+    assert numpy.array_equal(other.draw(20)[0], noisefloor.Table(1000, seed=1).draw(20)[0])
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no processes are forked here")
+@pytest.mark.filterwarnings("ignore:This process")  # it says that it has threads
+def test_forks_while_others_draw():
+    table, ends = noisefloor.Table(100, seed=1), threading.Event()
+
+    def work():
+        while not ends.is_set():
+            table.draw(100_000)
+
+    workers = [threading.Thread(target=work) for _ in range(2)]
+    for worker in workers:
+        worker.start()
+    try:
+        for _ in range(10):
+            child = os.fork()
+            if child == 0:
+                signal.alarm(20)  # it would wait for ever
+                os._exit(0 if len(table.draw(4)[0]) == 4 else 1)
+            assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    finally:
+        ends.set()
+        for worker in workers:
+            worker.join()
+
+
 def test_what_cannot_be_appended_changes_nothing():
     table, before = noisefloor.Table(4, seed=4), noisefloor.Table(4, seed=4)
     for wrong, words in (
         ([1, -1.0], r"importance\[1\] is -1.0: it must be at least 0"),
         ([1e39], r"importance\[0\] is 1e\+39: it must be"),
         ([[1.0]], "shape"),
-        (1.0, "shape"),
+        (-1.0, r"importance\[0\] is -1.0"),
         (numpy.broadcast_to(numpy.float32(1), 2**32 - 4), "n is 4294967296: it must be 1 to 4294967295"),
     ):
         with pytest.raises(ValueError, match=words):
@@ -183,6 +236,12 @@ def test_arrays_of_anybody():
         assert numpy.array_equal(table.probabilities(), plain.probabilities())
 
 
+def damaged(state):
+    """One that claims 2^32 - 1 items."""
+    state["table"][12:16] = 255
+    return state
+
+
 @pytest.mark.parametrize(
     "call, said",
     [
@@ -217,7 +276,11 @@ def test_arrays_of_anybody():
         (lambda t: t.probabilities([10]), r"index\[0\] is 10"),
         (lambda t: setattr(t, "uniform_fraction", 2), "uniform_fraction is 2.0"),
         (lambda t: t.load_state_dict({}), "the state has no 'table': it must be state_dict"),
-        (lambda t: t.load_state_dict(noisefloor.Table(9).state_dict()), "the state has 9 items, this table 10"),
+        (lambda t: t.load_state_dict(damaged(t.state_dict())), "bytes: "),
+        (lambda t: t.reseed(-1), "seed is -1"),
+        (lambda t: t.importances([10]), r"index\[0\] is 10"),
+        (lambda t: t.update([1, 2], -1.0), r"importance\[0\] is -1.0"),
+        (lambda t: noisefloor.Table(10, capacity=9), "capacity is 9: it must be 10 to"),
         (
             lambda t: t.load_state_dict({"table": numpy.zeros(300, numpy.uint8), "rng": (0, 0)}),
             "300 bytes: the bytes are not",
