@@ -32,7 +32,7 @@ pub struct nf_recommendation {
     pub tile_samples: u32,
     /// The same: its dims.
     pub tile_dims: u32,
-    /// What to expect: mean squared error over that of the plain mean of independent samples (docs/choosing.md).
+    /// Mean squared error over that of the mean of independent samples, of smooth formulas: frames keep far more.
     pub error: f32,
     /// The same of the image filtered by a Gaussian of 2.1 pixels.
     pub filtered_error: f32,

@@ -55,8 +55,8 @@ pub struct Recommendation {
     pub tile_samples: usize,
     /// The same: its dims.
     pub tile_dims: usize,
-    /// What to expect: mean squared error over that of the plain mean of independent samples, as `docs/choosing.md`
-    /// measures it.
+    /// Mean squared error over that of the plain mean of independent samples, of the smooth formulas of
+    /// `docs/choosing.md`: of rendered frames several times as much is left.
     pub error: f32,
     /// The same of the image filtered by a Gaussian of 2.1 pixels.
     pub filtered_error: f32,
