@@ -66,24 +66,36 @@ pub(crate) fn minus_product<R: Real, const L: usize>(a: Lanes<R, L>, b: Lanes<R,
     out
 }
 
-/// Sums less products, one after the other: of each sum with a column of `a`.
+/// Sums less products, one after the other: of each sum with a column of `a`. As many as both have.
 #[inline(always)]
 pub(crate) fn minus_products<R: Real, const N: usize>(
-    mut sums: [Lanes<R>; N],
+    sums: [Lanes<R>; N],
     a: &[[Lanes<R>; N]],
     b: &[Lanes<R>],
 ) -> [Lanes<R>; N] {
-    // Two at a time, or going through them takes as long as the arithmetic.
+    with_products(sums, a, b, minus_product)
+}
+
+/// The same by [`plus_product`], or [`minus_product`].
+#[inline(always)]
+pub(crate) fn with_products<R: Real, const N: usize>(
+    mut sums: [Lanes<R>; N],
+    a: &[[Lanes<R>; N]],
+    b: &[Lanes<R>],
+    with: impl Fn(Lanes<R>, Lanes<R>, Lanes<R>) -> Lanes<R>,
+) -> [Lanes<R>; N] {
+    // Of one length, or finding where to end takes as long as the arithmetic, as does going through them one by one.
+    let (Some(a), Some(b)) = (a.get(..a.len().min(b.len())), b.get(..a.len().min(b.len()))) else { return sums };
     let ((pairs, rest), (others, last)) = (a.as_chunks::<2>(), b.as_chunks::<2>());
     for ([x, y], [l, m]) in pairs.iter().zip(others) {
         for n in 0..N {
-            sums[n] = minus_product(minus_product(sums[n], x[n], *l), y[n], *m);
+            sums[n] = with(with(sums[n], x[n], *l), y[n], *m);
         }
         keep_together();
     }
     if let ([x], [l]) = (rest, last) {
         for n in 0..N {
-            sums[n] = minus_product(sums[n], x[n], *l);
+            sums[n] = with(sums[n], x[n], *l);
         }
     }
     sums

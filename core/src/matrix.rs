@@ -160,7 +160,12 @@ impl<T: 'static, S: Deref<Target = [T]>> Triangle<S> {
 
     /// The rows from the first on.
     pub(crate) fn rows(&self) -> impl Iterator<Item = &[T]> {
-        (0..self.order).map(|j| self.row(j))
+        let mut rest: &[T] = &self.entries;
+        (0..self.order).map_while(move |j| {
+            let (row, after) = rest.split_at_checked(j + 1)?;
+            rest = after;
+            Some(row)
+        })
     }
 }
 

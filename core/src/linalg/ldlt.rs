@@ -1,7 +1,7 @@
 //! A = L D L' for symmetric positive semidefinite matrices: the direct solver of (4.27).
 
 use crate::lanes::{self, LANES, Lanes, dot};
-use crate::matrix::{Triangle, from, part, split_at};
+use crate::matrix::{Triangle, split_at};
 use crate::real::{Real, rounding};
 use core::ops::{Deref, DerefMut};
 
@@ -110,9 +110,9 @@ pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
     let mut matrices = Triangle::new(matrices, n);
     for j in 0..n {
         let Some((l, row, diagonal)) = matrices.split(j) else { return };
-        for k in 0..j {
-            let Some((before, v_k)) = split_at(row, k) else { return };
-            [*v_k] = lanes::minus_products([*v_k], before.as_chunks().0, l.left(k));
+        for (k, l_k) in l.rows().enumerate() {
+            let (Some((before, v_k)), Some(l_k)) = (split_at(row, k), l_k.get(..k)) else { return };
+            [*v_k] = lanes::minus_products([*v_k], before.as_chunks().0, l_k);
         }
         let mut pivot = *diagonal;
         for (k, value) in row.iter_mut().enumerate() {
@@ -132,8 +132,9 @@ pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
 pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first: usize, x: &mut [[Lanes<R>; N]]) {
     let factors = Triangle::new(factors, x.len());
     for (j, row) in factors.rows().enumerate().skip(first) {
-        let Some((before, x_j)) = split_at(x, j) else { return };
-        *x_j = lanes::minus_products(*x_j, from(before, first), part(row, first, j - first));
+        let (Some((before, x_j)), Some(row)) = (split_at(x, j), row.get(first..j)) else { return };
+        let Some(before) = before.get(first..) else { return };
+        *x_j = lanes::minus_products(*x_j, before, row);
     }
 }
 

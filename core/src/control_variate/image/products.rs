@@ -89,30 +89,23 @@ pub(super) fn plus_four(mut sum: Eight, a: &Four, b: &Four) -> Eight {
 /// Adds to each sum the products of a column with one of `columns`.
 #[inline(always)]
 pub(super) fn add_products(sums: &mut [Eight], column: &Four, columns: &[Four]) {
-    let column = *column;
-    let (pairs, rest) = sums.as_chunks_mut::<2>();
-    let (others, _) = columns.as_chunks::<2>();
-    let odd = rest.first_mut().zip(columns.get(2 * pairs.len()));
+    let (column, len) = (*column, sums.len().min(columns.len()));
+    let (Some(sums), Some(columns)) = (sums.get_mut(..len), columns.get(..len)) else { return };
+    let ((pairs, rest), (others, last)) = (sums.as_chunks_mut::<2>(), columns.as_chunks::<2>());
     for ([a, b], [c, d]) in pairs.iter_mut().zip(others) {
         *a = plus_four(*a, &column, c);
         *b = plus_four(*b, &column, d);
         lanes::keep_together();
     }
-    if let Some((sum, other)) = odd {
+    if let ([sum], [other]) = (rest, last) {
         *sum = plus_four(*sum, &column, other);
     }
 }
 
 /// Four sums, and the products of columns with their coefficients.
 #[inline(always)]
-pub(super) fn combine(mut sums: Four, columns: &[Four], coefficients: &[Eight]) -> Four {
-    for (column, coefficient) in columns.iter().zip(coefficients) {
-        for row in 0..AT_ONCE {
-            sums[row] = lanes::plus_product(sums[row], column[row], *coefficient);
-        }
-        lanes::keep_together();
-    }
-    sums
+pub(super) fn combine(sums: Four, columns: &[Four], coefficients: &[Eight]) -> Four {
+    lanes::with_products(sums, columns, coefficients, lanes::plus_product)
 }
 
 /// Sums of the products of two rows up to each of `ends`.

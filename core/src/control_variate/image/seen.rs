@@ -38,14 +38,14 @@ impl Seen<'_> {
         let places = row_at(batch.places, terms.fixed(), block);
         let inside = at(batch.inside, block);
         ldlt::forward_each(self.factors, 0, columns);
-        let mut begin = 0;
+        let factors = Triangle::new(self.factors, width);
+        let (mut pivots, mut begin) = (factors.rows().filter_map(|row| row.last()), 0);
         for (index, fit) in fits.clone().enumerate() {
             let end = at(&terms.ends, fit);
             let solved = part(columns, begin, end - begin);
-            for (z, j) in solved.iter().zip(begin..) {
-                let pivot = diagonal(self.factors, j);
+            for (z, pivot) in solved.iter().zip(&mut pivots) {
                 for row in 0..AT_ONCE {
-                    leverage[row] = lanes::plus_product(leverage[row], product(&z[row], &pivot), z[row]);
+                    leverage[row] = lanes::plus_product(leverage[row], product(&z[row], pivot), z[row]);
                 }
                 lanes::keep_together();
             }

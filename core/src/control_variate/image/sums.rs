@@ -142,15 +142,18 @@ impl Call<'_> {
                 }
                 // Those of one channel without a loop.
                 let Some((least, others)) = first(&sums, len).split_first_chunk::<LEAST>() else { return };
-                for (lane, &spot) in spots.iter().enumerate().take(group.len - begin) {
-                    let (spot, lane) = (spot as usize, lane % LANES);
-                    let out = band.sums.get_mut(spot / LANES * len..);
+                let begins = spots.map(|spot| spot / LANES as u32 * len as u32);
+                for lane in 0..LANES.min(group.len - begin) {
+                    let (spot, lane) = (spots[lane % LANES] as usize % LANES, lane % LANES);
+                    let out = band.sums.get_mut(begins[lane] as usize..);
                     let Some((out, more)) = out.and_then(|out| out.split_first_chunk_mut::<LEAST>()) else { break };
                     for (out, sum) in out.iter_mut().zip(least) {
-                        out[spot % LANES] += sum[lane];
+                        out[spot] += sum[lane];
                     }
-                    for (out, sum) in more.iter_mut().zip(others) {
-                        out[spot % LANES] += sum[lane];
+                    if channels > 1 {
+                        for (out, sum) in more.iter_mut().zip(others) {
+                            out[spot] += sum[lane];
+                        }
                     }
                 }
             }
