@@ -8,7 +8,8 @@
 //! ```
 //!
 //! - `CHAPTER/TABLE: ROW | COLUMN` is a cell of docs/report/CHAPTER.json. ROW is some of the row's cells, with commas
-//!   between them, that no other row has; COLUMN is a column's name, or its place from 1 on.
+//!   between them, that no other row has; COLUMN is a column's name, or its place from 1 on. In a Markdown table it is
+//!   `\|`, as cells end at `|` even there.
 //! - `CHAPTER/quoted: NAME` and `CHAPTER/settings: NAME` are the figures that a chapter's text quotes, and its
 //!   settings.
 //! - `tiles/NAME: KEY` is a line of core/tiles/NAME.toml.
@@ -52,6 +53,8 @@ fn fill(document: &str, cell: &dyn Fn(&str) -> Result<f64>) -> Result<String> {
         out.push_str(before);
         let is_marker = name.split_once(": ").is_some_and(|(source, _)| source.contains('/') && !source.contains("//"));
         if is_marker {
+            let in_table = out.rsplit('\n').next().is_some_and(|line| line.starts_with('|'));
+            ensure!(!in_table || !name.contains(" | "), "<!-- {name} --> ends a cell of its table: write \\| for |");
             let number = out.trim_end_matches('`').trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len();
             let old = out.split_off(number);
             let digits = old.trim_end_matches('`');
@@ -114,7 +117,7 @@ fn measured(marker: &str) -> Result<f64> {
 
 /// The cell of a table.
 fn in_table(json: &Value, table: &str, cell: &str) -> Result<Value> {
-    let (row, column) = cell.split_once(" | ").context("not ROW | COLUMN")?;
+    let (row, column) = cell.split_once(" | ").or_else(|| cell.split_once(" \\| ")).context("not ROW | COLUMN")?;
     // A cell's text may itself hold commas.
     let is_named = |cells: &[Value]| {
         let names: Vec<String> = cells.iter().map(text).collect();
