@@ -242,11 +242,6 @@ def data(array):
     return None if array is None else array.__array_interface__["data"][0]
 
 
-def floats_at(address, count):
-    """The library's numbers there: no copy."""
-    return numpy.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(f32)), (count,))
-
-
 def workspace(size):
     """Memory for the library, aligned as it needs."""
     return numpy.empty((size + 7) // 8, numpy.uint64)

@@ -17,23 +17,27 @@ from . import _arrays, _c
 #: Larger batches, which take longer anyway, have arrays of their own.
 ROOM = 4096
 
-#: All tables, so that none is in use where a process forks; and those that wait for that.
-_tables = weakref.WeakSet()
-_held: list[Table] = []
+#: The locks of all tables, so that none is in use where a process forks; those that are held for it, as forks of
+#: signals' handlers may come between; and what keeps tables from being made meanwhile.
+_locks: weakref.WeakValueDictionary[int, Any] = weakref.WeakValueDictionary()
+_held: list[list[Any]] = []
 _forking = threading.RLock()
 
 
 def _hold():
+    held = []
     _forking.acquire()
-    _held.extend(_tables)
-    for table in _held:
-        table._lock.acquire()
+    _held.append(held)
+    for reference in _locks.valuerefs():  # a list, which no other thread changes
+        lock = reference()
+        if lock is not None:
+            lock.acquire()
+            held.append(lock)
 
 
 def _release():
-    for table in _held:
-        table._lock.release()
-    _held.clear()
+    for lock in _held.pop():
+        lock.release()
     _forking.release()
 
 
@@ -81,7 +85,8 @@ class Table:
             values = _arrays.floats("importance", importance)
             _arrays.check_shape("importance", values, (n,), "a number for each item")
         self._prepare(n, n if capacity is None else _arrays.integer("capacity", capacity, n, _arrays.MAX_U32))
-        status = _c.table_init(self._at, _c.data(self._memory), self._memory.nbytes, n, _c.data(values))
+        memory = self._memories[0]
+        status = _c.table_init(self._at, _c.data(memory), memory.nbytes, n, _c.data(values))
         if status:
             _arrays.check_positive("importance", importance)
             raise ValueError(f"importance is 0 for all of {n} items, as float32: at least one must be above 0")
@@ -96,14 +101,16 @@ class Table:
 
     def _prepare(self, n, capacity):
         """Memory for as many items, of which n are there."""
-        self._n, self._capacity = n, capacity
+        self._n = n
         self._table, self._rng, self._lock = _c.Table(), _c.Rng(), threading.RLock()
+        with _forking:
+            _locks[id(self._lock)] = self._lock
         self._at, self._rng_at = _c.address(self._table), _c.address(self._rng)
-        self._memory = _c.workspace(_c.table_size(capacity))
+        # Where the items are; while they move, and if a signal's handler has raised meanwhile, one of two.
+        self._memories = [_c.workspace(_c.table_size(capacity))]
         # Where the library reads and writes batches, so that their addresses need not be asked for each time.
         self._index, self._value = numpy.empty(ROOM, numpy.uint32), numpy.empty(ROOM, numpy.float32)
         self._index_at, self._value_at = _c.data(self._index), _c.data(self._value)
-        _tables.add(self)
 
     def __len__(self) -> int:
         return self._n
@@ -243,7 +250,7 @@ class Table:
             status = _c.table_append(self._at, _c.data(values), values.size)
             if status == _c.CONSTANTS["NF_ERR_MEMORY"]:
                 # Twice as many, so that items are rarely moved.
-                status = self._move(self._saved(), min(max(n, 2 * self._n), _arrays.MAX_U32))
+                status = self._move(self._saved(), min(max(n, 2 * self._room()), _arrays.MAX_U32))
                 assert not status, _c.message(status)
                 status = _c.table_append(self._at, _c.data(values), values.size)
             if not status:
@@ -252,38 +259,57 @@ class Table:
         _arrays.check_positive("importance", importance)
         raise ValueError(_c.message(status))
 
-    def _move(self, saved, capacity):
-        """Takes what was saved into memory for as many items, if these are more than there is room for."""
-        capacity = max(capacity, self._capacity)
-        memory = self._memory if capacity == self._capacity else _c.workspace(_c.table_size(capacity))
+    def _room(self):
+        """For how many items there is room."""
+        return 16 * self._table.blocks
+
+    def _memory(self):
+        """Where the items are, and how far into it."""
+        for memory in self._memories:
+            begin = (self._table.importance or _c.data(memory)) - _c.data(memory)
+            if 0 <= begin < memory.nbytes:
+                return memory, begin
+
+    def _move(self, saved, items):
+        """Takes what was saved, into other memory if there is no room for as many items."""
+        memory = there = self._memory()[0]
+        if _c.table_size(items) > there.nbytes:
+            memory = _c.workspace(_c.table_size(items))
+        self._memories = [there, memory]
         status = _c.table_load(self._at, _c.data(memory), memory.nbytes, _c.data(saved), saved.nbytes)
-        if not status:
-            self._memory, self._capacity = memory, capacity
+        self._memories = [self._memory()[0]]
         return status
 
     def _fill(self, importance):
         """All items get this importance, above 0 as float32."""
-        values, fraction = numpy.full(self._n, importance, numpy.float32), self.uniform_fraction
         with self._lock:
-            status = _c.table_init(self._at, _c.data(self._memory), self._memory.nbytes, self._n, _c.data(values))
+            values, fraction = numpy.full(self._n, importance, numpy.float32), self.uniform_fraction
+            memory, _ = self._memory()
+            status = _c.table_init(self._at, _c.data(memory), memory.nbytes, self._n, _c.data(values))
             assert not status, _c.message(status)
             self._table.uniform_fraction = fraction
 
     def importances(self, index: Any = None) -> NDArray[numpy.float32]:
         """The importance of each of these items, float32, of index's shape; of all items for None."""
+        if index is not None:
+            index = _arrays.array("index", index)
         with self._lock:
-            if index is not None:
-                index = _arrays.integers("index", index, self._n - 1)
-            all_of_them = _c.floats_at(self._table.importance, self._n)
-            return all_of_them.copy() if index is None else all_of_them[index]
+            index = self._items(index)
+            memory, begin = self._memory()
+            values = memory.view(numpy.float32)[begin // 4 :]
+            return values.take(index, out=numpy.empty(index.shape, numpy.float32))
+
+    def _items(self, index):
+        """These items, all for None, while the lock is held."""
+        return _arrays.integers("index", numpy.arange(self._n) if index is None else index, self._n - 1)
 
     def probabilities(self, index: Any = None) -> NDArray[numpy.float32]:
         """The probability of drawing each of these items, float32, of index's shape; of all items for None."""
-        if index is None:
-            index = numpy.arange(self._n, dtype=numpy.uint32)
-        index = _arrays.integers("index", index, self._n - 1)
-        p = numpy.empty(index.shape, numpy.float32)
+        if index is not None:
+            index = _arrays.array("index", index)
         with self._lock:
+            index = self._items(index)
+            p = numpy.empty(index.shape, numpy.float32)
             status = _c.table_probabilities(self._at, _c.data(index), index.size, 1, _c.data(p))
         if status:
             raise self._draw_error(status, 0, None)
@@ -331,12 +357,12 @@ class Table:
 
     def __getstate__(self):
         others = {name: value for name, value in vars(self).items() if name not in OWN}
-        return {"capacity": self._capacity, "others": others, **self.state_dict()}
+        return {"capacity": self._room(), "others": others, **self.state_dict()}
 
     def __setstate__(self, state):
         capacity, others = _arrays.parts(state, "capacity", "others")
         vars(self).update(others)
-        self._prepare(0, capacity)
+        self._prepare(0, _arrays.integer("capacity", capacity, 1, _arrays.MAX_U32))
         self.load_state_dict(state)
 
 

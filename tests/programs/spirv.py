@@ -1,6 +1,6 @@
 """Operations of a draw in SPIR-V, and noisefloor_sampler.h in Metal: spirv.py GLSLANG INCLUDE SHADER SCRATCH
 
-A draw of the root has at most 38 integer operations, one of a child 75, and each two fetches; none is of 64 bits.
+A draw of the root has at most 38 integer operations, one of its child 75, and each two fetches; none is of 64 bits.
 """
 
 import re
@@ -12,7 +12,7 @@ INTEGER = re.compile(
     r"= Op(I(Add|Sub|Mul|Equal|NotEqual)|Bitwise\w+|Shift\w+|Not|BitReverse|BitField\w+"
     r"|Select|[US](Div|Mod|LessThan|GreaterThan)\w*)\b"
 )
-# What no device does, and later versions of spirv-opt leave out.
+# With the root's domain, 0: what no device does, and later versions of spirv-opt leave out.
 NOTHING = re.compile(r"= OpBitwiseXor %uint %\w+ %uint_0\b")
 
 

@@ -37,7 +37,7 @@ pub struct nf_cv_image {
     /// see the same; pixels near 0 beside others are better kept apart by `surfaces`.
     pub factors: *const f32,
     /// The pixels that input arrays hold, in all frames, and that count, at most 2^30 - 1; all zero: all of the image.
-    /// Without `wanted` whole windows; else only those that `wanted` needs are read.
+    /// Without `wanted` whole windows. Of these only the pixels are read that `wanted` needs.
     pub given: nf_cv_rectangle,
     /// The pixels to estimate, in all frames, of which every window must be given whole: see nf_cv_image_needed(). All
     /// zero: all that are given. Parts that are estimated apart, by threads say, have the bits of the whole.

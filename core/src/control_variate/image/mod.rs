@@ -94,7 +94,7 @@ fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
 /// [`Error::Range`] also for an image without pixels or with more than [`Image::MAX_PIXELS`], for windows and parts
 /// that [`Image`] does not allow, for negative factors or integrals, and where only one of `known` and its integrals is
 /// there; [`Error::Length`] also for arrays of [`Image`]; [`Error::NotFinite`] for factors, for what is known and for
-/// integrals that are not finite.
+/// integrals that are not finite. Of pixels that are not needed no number is looked at.
 ///
 /// ```
 /// use noisefloor::control_variate::{Config, Image, Samples, estimate_image, image_workspace_len};
