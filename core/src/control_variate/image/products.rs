@@ -213,7 +213,7 @@ impl<'a> Sums<'a> {
     pub(super) fn add(&mut self, part: usize, columns: &[Four], values: &[Four]) {
         let (width, Part { mut gram, sides, squares }) = (columns.len(), self.part_mut(part));
         for (i, column) in columns.iter().enumerate() {
-            let (row, rest) = halves_mut(gram, i + 1);
+            let Some((row, rest)) = gram.split_at_mut_checked(i + 1) else { return };
             gram = rest;
             add_products(row, column, columns);
         }

@@ -42,7 +42,7 @@ impl Seen<'_> {
         let (mut pivots, mut begin) = (factors.rows().filter_map(|row| row.last()), 0);
         for (index, fit) in fits.clone().enumerate() {
             let end = at(&terms.ends, fit);
-            let solved = part(columns, begin, end - begin);
+            let Some(solved) = columns.get(begin..end) else { return };
             for (z, pivot) in solved.iter().zip(&mut pivots) {
                 for row in 0..AT_ONCE {
                     leverage[row] = lanes::plus_product(leverage[row], product(&z[row], pivot), z[row]);
@@ -51,7 +51,8 @@ impl Seen<'_> {
             }
             let sides = rows(self.of_values, width).chain(rows(self.of_units, width));
             for (sum, side) in sums.iter_mut().take(values + places.len()).zip(sides) {
-                *sum = combine(*sum, solved, from(side, begin));
+                let Some(side) = side.get(begin..end) else { return };
+                *sum = combine(*sum, solved, side);
             }
             begin = end;
             let (of_values, shares) = halves(&sums, values);
