@@ -271,7 +271,6 @@ NFS_FUNCTION nfs_floats nfs_draw2(nfs s NFS_TABLE)
 
 /* A column of the matrix, if bit k of the index is set. */
 #define NFS_COLUMN(k, column) ((0u - ((at.order >> (31 - (k))) & 1u)) & column)
-
 /* nf_sampler_draw() of 3 or 4 numbers. */
 NFS_FUNCTION nfs_floats nfs_draw4(nfs s NFS_TABLE)
 {
@@ -296,5 +295,6 @@ NFS_FUNCTION nfs_floats nfs_draw4(nfs s NFS_TABLE)
     u.w = nfs_unit(s, p.y, 4u);
     return u;
 }
+#undef NFS_COLUMN
 
 #endif

@@ -85,7 +85,8 @@ pub(crate) fn with_products<R: Real, const N: usize>(
     with: impl Fn(Lanes<R>, Lanes<R>, Lanes<R>) -> Lanes<R>,
 ) -> [Lanes<R>; N] {
     // Of one length, or finding where to end takes as long as the arithmetic, as does going through them one by one.
-    let (Some(a), Some(b)) = (a.get(..a.len().min(b.len())), b.get(..a.len().min(b.len()))) else { return sums };
+    let len = a.len().min(b.len());
+    let (Some(a), Some(b)) = (a.get(..len), b.get(..len)) else { return sums };
     let ((pairs, rest), (others, last)) = (a.as_chunks::<2>(), b.as_chunks::<2>());
     for ([x, y], [l, m]) in pairs.iter().zip(others) {
         for n in 0..N {

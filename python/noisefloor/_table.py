@@ -294,21 +294,21 @@ class Table:
         if index is not None:
             index = _arrays.array("index", index)
         with self._lock:
-            index = self._items(index)
             memory, begin = self._memory()
-            values = memory.view(numpy.float32)[begin // 4 :]
+            values = memory.view(numpy.float32)[begin // 4 :][: self._n]
+            if index is None:
+                return values.copy()
+            index = _arrays.integers("index", index, self._n - 1)
             return values.take(index, out=numpy.empty(index.shape, numpy.float32))
-
-    def _items(self, index):
-        """These items, all for None, while the lock is held."""
-        return _arrays.integers("index", numpy.arange(self._n) if index is None else index, self._n - 1)
 
     def probabilities(self, index: Any = None) -> NDArray[numpy.float32]:
         """The probability of drawing each of these items, float32, of index's shape; of all items for None."""
         if index is not None:
             index = _arrays.array("index", index)
         with self._lock:
-            index = self._items(index)
+            if index is None:
+                index = numpy.arange(self._n, dtype=numpy.uint32)
+            index = _arrays.integers("index", index, self._n - 1)
             p = numpy.empty(index.shape, numpy.float32)
             status = _c.table_probabilities(self._at, _c.data(index), index.size, 1, _c.data(p))
         if status:

@@ -28,7 +28,7 @@ class Browser:
             os.dup2(ends[1], 4)
 
         program = shutil.which("chromium") or "chromium"
-        options = ["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe", "--window-size=900,1500"]
+        options = ["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe", "--window-size=900,1700"]
         self.process = subprocess.Popen([program, *options, f"--user-data-dir={folder}", "about:blank"],
             preexec_fn=descriptors, close_fds=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
         os.close(to_browser[0])

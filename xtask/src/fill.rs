@@ -53,13 +53,13 @@ fn fill(document: &str, cell: &dyn Fn(&str) -> Result<f64>) -> Result<String> {
         out.push_str(before);
         let is_marker = name.split_once(": ").is_some_and(|(source, _)| source.contains('/') && !source.contains("//"));
         if is_marker {
-            let in_table = out.rsplit('\n').next().is_some_and(|line| line.starts_with('|'));
-            ensure!(!in_table || !name.contains(" | "), "<!-- {name} --> ends a cell of its table: write \\| for |");
+            let is_row = out.rsplit('\n').next().is_some_and(|line| line.starts_with('|'));
+            ensure!(!is_row || !name.contains(" | "), "<!-- {name} --> ends a cell of its table: write \\| for |");
             let number = out.trim_end_matches('`').trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len();
             let old = out.split_off(number);
             let digits = old.trim_end_matches('`');
             ensure!(!digits.is_empty(), "no number stands before <!-- {name} -->");
-            let value = cell(name).with_context(|| format!("<!-- {name} -->"))?;
+            let value = cell(&name.replace("\\|", "|")).with_context(|| format!("<!-- {name} -->"))?;
             let is_signed = out.ends_with(['-', '−', '+']);
             ensure!(is_signed || value >= 0.0, "<!-- {name} -->: {value} has a sign that {digits} has not");
             if is_signed && out.ends_with('+') == (value < 0.0) {
@@ -117,7 +117,7 @@ fn measured(marker: &str) -> Result<f64> {
 
 /// The cell of a table.
 fn in_table(json: &Value, table: &str, cell: &str) -> Result<Value> {
-    let (row, column) = cell.split_once(" | ").or_else(|| cell.split_once(" \\| ")).context("not ROW | COLUMN")?;
+    let (row, column) = cell.split_once(" | ").context("not ROW | COLUMN")?;
     // A cell's text may itself hold commas.
     let is_named = |cells: &[Value]| {
         let names: Vec<String> = cells.iter().map(text).collect();

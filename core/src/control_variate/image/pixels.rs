@@ -334,9 +334,8 @@ impl Windows {
     /// The rows of pixels that are read, by the pixels' numbers.
     pub(super) fn rows(&self) -> impl Iterator<Item = Range<usize>> {
         let Rectangle { x, y, width, height } = self.needed;
-        (0..self.frames())
-            .flat_map(move |frame| (y..y + height).map(move |y| self.number(x, y, frame)))
-            .map(move |first| first..first + width)
+        let row = move |frame, y| self.number(x, y, frame)..self.number(x + width, y, frame);
+        (0..self.frames()).flat_map(move |frame| (y..y + height).map(move |y| row(frame, y)))
     }
 
     pub(super) fn number(&self, x: usize, y: usize, frame: usize) -> usize {
