@@ -687,6 +687,14 @@ inline returned<float> optimal_contribution(const point &at, std::uint32_t techn
 
 } // namespace mis
 
+namespace detail {
+// Whether so many numbers are n rows; products could overflow.
+inline bool is_rows(std::size_t size, std::size_t n, std::size_t width) noexcept
+{
+    return n == 0 ? size == 0 : size % n == 0 && size / n == width;
+}
+} // namespace detail
+
 // A view of an nf_omis in caller memory: copying the view does not copy the sums.
 class optimal_mis {
 public:
@@ -724,11 +732,17 @@ public:
     static returned<optimal_mis> create(span<const std::uint32_t>, std::uint32_t, C &&) = delete;
     optimal_mis() noexcept = default;
 
-    // pdf[techniques], value[integrals]
+    // One sample. pdf[techniques], value[integrals]
     returned<void> add(std::uint32_t technique, span<const float> pdf, span<const float> value)
     {
-        const bool fits = pdf.size() == techniques_ && value.size() == integrals_;
-        return finish(fits ? nf_omis_add(handle_, technique, pdf.data(), value.data()) : NF_ERR_LENGTH);
+        return add(pdf, span<const std::uint32_t>(&technique, 1), value);
+    }
+    // n samples. pdf[n * techniques], technique[n], value[n * integrals]
+    returned<void> add(span<const float> pdf, span<const std::uint32_t> technique, span<const float> value)
+    {
+        const std::size_t n = technique.size();
+        const bool fits = detail::is_rows(pdf.size(), n, techniques_) && detail::is_rows(value.size(), n, integrals_);
+        return finish(fits ? nf_omis_add(handle_, pdf.data(), technique.data(), value.data(), n) : NF_ERR_LENGTH);
     }
     // out[integrals]
     returned<void> solve(span<float> out, solver how = solver::ridge, float ridge = 0.0f) const
@@ -1087,7 +1101,7 @@ inline returned<void> omis_weights(std::uint32_t techniques, std::uint32_t items
 {
     const std::size_t batch = weight.size();
     const bool fits = batch <= UINT32_MAX && technique.size() == batch && techniques > 0 &&
-                      pdf.size() % techniques == 0 && pdf.size() / techniques == batch;
+                      detail::is_rows(pdf.size(), batch, techniques);
     return detail::finish(fits ? nf_omis_weights(static_cast<std::uint32_t>(how), ridge, techniques, items, pdf.data(),
                                                  technique.data(), static_cast<std::uint32_t>(batch), weight.data())
                           : techniques > 0 ? NF_ERR_LENGTH

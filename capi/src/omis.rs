@@ -76,29 +76,35 @@ pub unsafe extern "C" fn nf_omis_init(
     })())
 }
 
-/// Adds one sample, drawn by `technique`: every one, those of value 0 too, in whole rounds of the counts or from
+/// Adds n samples, all or none: every one that was drawn, those of value 0 too, in whole rounds of the counts or from
 /// technique k with probability n_k / sum n. A draw that failed, without a point, has value 0, pdf 1 of its technique
 /// and 0 of the others.
 ///
-/// pdf[techniques]: the density of each technique at the point, finite, at least 0, that of the technique positive.
-/// value[integrals]: each integrand there, not divided by any density, finite.
+/// pdf[n * techniques]: the density of each technique at each point, finite, at least 0, that of the technique which
+/// drew it, technique[n], positive. value[n * integrals]: the integrands there, not divided by any density, finite.
 ///
-/// NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE.
+/// NF_ERR_RANGE: a technique or a density; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_omis_add(
     omis: *mut nf_omis,
-    technique: u32,
     pdf: *const f32,
+    technique: *const u32,
     value: *const f32,
+    n: usize,
 ) -> nf_status {
     status((|| {
-        // SAFETY: the caller passes an object that no one else uses meanwhile, and arrays of the lengths it was made
-        // for.
+        // SAFETY: the caller passes an object that no one else uses meanwhile.
         let mut omis: OptimalMis<&mut [f64]> = unsafe { open(omis) }?;
-        // SAFETY: as above.
-        let (pdf, value) =
-            unsafe { (convert::slice(pdf, omis.techniques())?, convert::slice(value, omis.integrals())?) };
-        Ok(omis.add(technique as usize, pdf, value)?)
+        let (techniques, integrals) = (omis.techniques(), omis.integrals());
+        let (pdfs, values) = (convert::product(n, techniques)?, convert::product(n, integrals)?);
+        // SAFETY: the caller passes arrays of the lengths that the object was made for, n times.
+        let (pdf, technique, value) =
+            unsafe { (convert::slice(pdf, pdfs)?, convert::slice(technique, n)?, convert::slice(value, values)?) };
+        // An object has at least one of each, which the compiler does not know.
+        let rows = pdf.chunks_exact(techniques.max(1)).zip(value.chunks_exact(integrals.max(1)));
+        let samples = technique.iter().zip(rows).map(|(&technique, (pdf, value))| (technique as usize, pdf, value));
+        samples.clone().try_for_each(|(technique, pdf, value)| omis.check(technique, pdf, value))?;
+        Ok(samples.clone().try_for_each(|(technique, pdf, value)| omis.add(technique, pdf, value))?)
     })())
 }
 

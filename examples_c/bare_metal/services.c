@@ -127,7 +127,7 @@ static void mis(void)
     platform_stack_paint();
     status = nf_omis_init(workspace, sizeof workspace, 3, 1, counts, &omis);
     for (j = 0; j < 3 && status == NF_OK; ++j)
-        status = nf_omis_add(omis, j, pdf, &value);
+        status = nf_omis_add(omis, pdf, &j, &value, 1);
     if (status == NF_OK)
         status = nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0f, &estimate, NULL);
     line("nf_omis", status, bits(estimate), 0);

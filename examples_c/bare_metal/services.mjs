@@ -99,6 +99,7 @@ function streaming() {
 
 function mis() {
     const pdf = structure(), counts = structure(), value = structure(), result = structure(), omis = structure();
+    const technique = structure();
     floats.set([0.5, 2, 1], pdf / 4);
     words.set([2, 1, 4], counts / 4);
     floats[value / 4] = 3;
@@ -107,7 +108,10 @@ function mis() {
     line("nf_mis_weight", status, words[result / 4], 0);
     paint();
     status = nf.nf_omis_init(workspace, WORKSPACE_BYTES, 3, 1, counts, omis);
-    for (let j = 0; j < 3 && !status; ++j) status = nf.nf_omis_add(words[omis / 4], j, pdf, value);
+    for (let j = 0; j < 3 && !status; ++j) {
+        words[technique / 4] = j;
+        status = nf.nf_omis_add(words[omis / 4], pdf, technique, value, 1);
+    }
     status ||= nf.nf_omis_solve(words[omis / 4], OMIS_RIDGE, 0, result, 0);
     line("nf_omis", status, words[result / 4], 0);
 }

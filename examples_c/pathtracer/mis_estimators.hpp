@@ -65,7 +65,7 @@ private:
                     Drawn failed = {};
                     failed.pdf[t] = 1;
                     const Drawn &sample = pairs[i].drawn[t].pdf[t] > 0 ? pairs[i].drawn[t] : failed;
-                    check(nf_omis_add(omis, t, sample.pdf, sample.value), "nf_omis_add");
+                    check(nf_omis_add(omis, sample.pdf, &t, sample.value, 1), "nf_omis_add");
                 }
             check(nf_omis_solve(omis, NF_OMIS_RIDGE, 0, nullptr, alpha), "nf_omis_solve");
         }

@@ -86,9 +86,11 @@ fn accumulator(source: &mut Source<'_>) -> Result<()> {
             let (solver, ridge) = (source.small(4)?, source.number()?);
             match source.any::<u8>()? % 8 {
                 0..4 => {
-                    let pdf = source.array(j, |source| source.number().map(f32::abs))?;
-                    let value = source.array(p, Source::number)?;
-                    nf_omis_add(object, source.small(6)?, pdf.pointer(), value.pointer());
+                    let n = usize::from(source.any::<u8>()? % 4);
+                    let pdf = source.array(n * j, |source| source.number().map(f32::abs))?;
+                    let technique = source.array(n, |source| source.small(6))?;
+                    let value = source.array(n * p, Source::number)?;
+                    nf_omis_add(object, pdf.pointer(), technique.pointer(), value.pointer(), n);
                 }
                 4 | 5 => _ = nf_omis_next_batch(object, solver, ridge, source.unit()?),
                 _ => _ = nf_omis_merge(first, second),
@@ -171,7 +173,7 @@ fn defaults_work() {
         let mut memory = vec![0_u64; nf_omis_size(2, 1).div_ceil(8)];
         let (to, bytes, mut omis) = (memory.as_mut_ptr().cast(), 8 * memory.len(), null_mut());
         assert_eq!(nf_omis_init(to, bytes, 2, 1, counts.as_ptr(), &mut omis), NF_OK);
-        assert_eq!(nf_omis_add(omis, 0, pdf.as_ptr(), &1.0), NF_OK);
+        assert_eq!(nf_omis_add(omis, pdf.as_ptr(), &0, &1.0, 1), NF_OK);
         assert_eq!(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0, weight.as_mut_ptr(), null_mut()), NF_OK);
         let (p, j, to) = (pdf.as_ptr(), technique.as_ptr(), weight.as_mut_ptr());
         assert_eq!(nf_omis_weights(NF_OMIS_RIDGE, 0.0, 2, 2, p, j, 2, to), NF_OK);

@@ -76,13 +76,13 @@ size_t nf_omis_size(uint32_t techniques, uint32_t integrals);
 nf_status nf_omis_init(void *memory, size_t bytes, uint32_t techniques, uint32_t integrals, const uint32_t *counts,
     nf_omis **out);
 
-// Adds one sample, drawn by `technique`: every one, those of value 0 too, in whole rounds of the counts or from
+// Adds n samples, all or none: every one that was drawn, those of value 0 too, in whole rounds of the counts or from
 // technique k with probability n_k / sum n. A draw that failed, without a point, has value 0, pdf 1 of its technique
 // and 0 of the others.
-// pdf[techniques]: the density of each technique at the point, finite, at least 0, that of the technique positive.
-// value[integrals]: each integrand there, not divided by any density, finite.
-// NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE.
-nf_status nf_omis_add(nf_omis *omis, uint32_t technique, const float *pdf, const float *value);
+// pdf[n * techniques]: the density of each technique at each point, finite, at least 0, that of the technique which
+// drew it, technique[n], positive. value[n * integrals]: the integrands there, not divided by any density, finite.
+// NF_ERR_RANGE: a technique or a density; NF_ERR_NOT_FINITE.
+nf_status nf_omis_add(nf_omis *omis, const float *pdf, const uint32_t *technique, const float *value, size_t n);
 
 // Estimates the integrals from all samples so far, or the weights' coefficients alpha (2.15); NULL: not wanted.
 // solver: NF_OMIS_*. ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for

@@ -129,10 +129,17 @@ CONSTANTS = dict(
     NF_BASIS_STEP=1,
     NF_BASIS_SINE=2,
     NF_BASIS_GAUSSIAN=3,
+    NF_SOLVER_AUTO=0,
+    NF_SOLVER_NORMAL_EQUATIONS=1,
+    NF_SOLVER_SQUARE_ROOT=2,
+    NF_SOLVER_DUAL=3,
+    NF_RIDGE_AUTO=-1.0,
     NF_METHOD_PLAIN_MEAN=0,
     NF_METHOD_PER_PIXEL=1,
     NF_METHOD_SHARED=2,
     NF_OMIS_RIDGE=0,
+    NF_OMIS_PLAIN=1,
+    NF_OMIS_BALANCE=3,
     NF_MIS_MAX_TECHNIQUES=16,
     NF_TABLE_SAVED_HEADER=32,
 )
@@ -143,8 +150,10 @@ def _names(prefix):
     return {name[len(prefix) :].lower(): value for name, value in CONSTANTS.items() if name.startswith(prefix)}
 
 
-ESTIMATORS, BASES, METHODS = _names("NF_CV_"), _names("NF_BASIS_"), _names("NF_METHOD_")
-MAX_DIMS, MAX_ORDER, MAX_CHANNELS, MAX_TERMS = 16, 7, 4, 136
+ESTIMATORS, BASES, SOLVERS, METHODS, OMIS_SOLVERS = map(
+    _names, ("NF_CV_", "NF_BASIS_", "NF_SOLVER_", "NF_METHOD_", "NF_OMIS_")
+)
+MAX_DIMS, MAX_ORDER, MAX_CHANNELS, MAX_TERMS, MAX_CONTROLS, MAX_DUAL = 16, 7, 4, 136, 4, 4096
 
 FUNCTIONS = """
 uint32_t nf_abi_version(void);
@@ -174,6 +183,10 @@ nf_status nf_table_probabilities(const nf_table *, const uint32_t *, uint32_t, u
 nf_status nf_table_save(const nf_table *, void *, size_t);
 nf_status nf_table_load(nf_table *, void *, size_t, const void *, size_t);
 nf_status nf_shuffle(uint64_t, uint32_t, uint64_t, uint32_t, uint32_t *);
+size_t nf_omis_size(uint32_t, uint32_t);
+nf_status nf_omis_init(void *, size_t, uint32_t, uint32_t, const uint32_t *, nf_omis **);
+nf_status nf_omis_add(nf_omis *, const float *, const uint32_t *, const float *, size_t);
+nf_status nf_omis_solve(const nf_omis *, uint32_t, float, float *, float *);
 nf_status nf_omis_weights(uint32_t, float, uint32_t, uint32_t, const float *, const uint32_t *, uint32_t, float *);
 """
 

@@ -13,11 +13,14 @@ from . import _arrays, _c
 ImageEstimator = Literal["robust", "leave_one_out", "k_fold"]
 Estimator = Literal[ImageEstimator, "least_squares", "gradient_descent", "incremental"]
 Basis = Literal["legendre", "step", "sine", "gaussian"]
+Solver = Literal["auto", "normal_equations", "square_root", "dual"]
 
 #: Samples of one call: the interpreter sees an interrupt between two.
 CHUNK = 1 << 19
 #: As many numbers as are copied for one call, where arrays are broadcast.
 COPIED = 1 << 24
+#: Strengths that the library does not raise, and that float32 has.
+RIDGES = 1e-12, 3e38
 
 
 class Estimate(NamedTuple):
@@ -43,6 +46,8 @@ def estimate(
     u: Any,
     f: Any,
     *,
+    controls: Any = None,
+    control_integrals: Any = None,
     order: int = 2,
     estimator: Estimator = "robust",
     basis: Basis = "legendre",
@@ -50,6 +55,9 @@ def estimate(
     slices: int = 1,
     stratified: bool = False,
     channels: bool = False,
+    ridge: float | Literal["auto"] | None = None,
+    folds: int | None = None,
+    solver: Solver = "auto",
 ) -> Estimate:
     """Estimates the integral of f over the unit cube from n samples, or many integrals from n samples of each.
 
@@ -58,7 +66,10 @@ def estimate(
     Args:
         u: shape (..., n, d), 0 to 1: the coordinates of each sample.
         f: shape (..., n), finite; with `channels` (..., n, c), 1 to 4 of them. Leading dimensions broadcast with u's.
-        order: largest total degree of the functions, 0 to 7; 0 is the plain mean. At most 136 terms.
+        controls: shape (..., n, k): 1 to 4 functions of known integral at the samples, to be regressed as well.
+        control_integrals: shape (k,), or (..., k): those integrals, over the unit cube.
+        order: largest total degree of the functions, 0 to 7; 0 is the plain mean, or the controls alone. At most 136
+            terms.
         estimator: "robust", never noticeably worse than the mean; "least_squares", for many samples per term, and for
             Sobol points; "leave_one_out" and "k_fold", exactly unbiased; "gradient_descent"; "incremental".
         basis: "legendre", "step", "sine" or "gaussian".
@@ -67,6 +78,11 @@ def estimate(
         stratified: whether the points are (Sobol's, a lattice's, `Sampler`'s). All but "least_squares" and
             "gradient_descent" are then their plain mean; std_error and gain are those of independent samples.
         channels: whether f's last axis holds the values of a sample.
+        ridge: strength per sample, above 0; None: the default; "auto": the best of a few by leave-one-out errors.
+            "robust" and "gradient_descent" ignore it.
+        folds: of "k_fold", 2 to 16; None: 4.
+        solver: "auto"; "normal_equations"; "square_root", of "least_squares", for badly placed samples; "dual", of at
+            most 4,096 samples.
 
     Returns:
         An `Estimate` with u's and f's leading dimensions. u and f are rounded to float32: of f = 1e8 + g nothing of g
@@ -91,24 +107,61 @@ def estimate(
     if channels and own[1] > _c.MAX_CHANNELS:
         most = f"{_c.MAX_CHANNELS} are the most; for more put them first: numpy.moveaxis(f, -1, 0)"
         raise ValueError(f"the number of f's channels is {own[1]}: {most}")
-    config = configure(order, estimator, basis, d, dims, slices, stratified, own[1] if channels else 1)
+    # Arrays by their names in C, each with how many of its axes are one integral's.
+    arrays = {"u": (u, 2), "f": (f, 1 + values)}
+    if (controls is None) != (control_integrals is None):
+        raise ValueError("controls and control_integrals belong together: one of them is None")
+    if controls is not None:
+        controls = _arrays.check_finite("controls", _arrays.array("controls", controls))
+        integrals = _arrays.check_finite("control_integrals", _arrays.array("control_integrals", control_integrals))
+        if controls.ndim < 2 or controls.shape[-2] != n or controls.shape[-1] == 0:
+            raise ValueError(f"controls has the shape {controls.shape}: (..., {n}, k) is needed, k from 1 to 4")
+        if integrals.shape[-1:] != controls.shape[-1:]:
+            raise ValueError(f"control_integrals has the shape {integrals.shape}: (..., {controls.shape[-1]}) is needed")
+        arrays |= {"controls": (controls, 2), "control_integrals": (integrals, 1)}
+    count = 0 if controls is None else controls.shape[-1]
+    config = configure(
+        order,
+        estimator,
+        basis,
+        d,
+        dims,
+        slices,
+        stratified,
+        own[1] if channels else 1,
+        controls=count,
+        ridge=ridge,
+        folds=folds,
+        solver=solver,
+    )
+    if config.solver == _c.SOLVERS["dual"] and n > _c.MAX_DUAL:
+        raise ValueError(f"solver is 'dual', and u has {n} samples: it takes at most {_c.MAX_DUAL}")
+    leadings = {name: array.shape[: array.ndim - axes] for name, (array, axes) in arrays.items()}
     try:
-        leading = numpy.broadcast_shapes(u.shape[:-2], f.shape[: f.ndim - 1 - values])
+        leading = numpy.broadcast_shapes(*leadings.values())
     except ValueError:
-        raise ValueError(f"the leading dimensions of u {u.shape} and f {f.shape} do not broadcast") from None
+        words = ", ".join(f"{name} {array.shape}" for name, (array, _) in arrays.items())
+        raise ValueError(f"the leading dimensions of {words} do not broadcast") from None
     _arrays.warn_of_lost_digits("f", given[1], -1 - values)
-    wide = numpy.broadcast_to(u, leading + (n, d)), numpy.broadcast_to(f, leading + own)
+    wide = {
+        name: numpy.broadcast_to(array, leading + array.shape[len(leadings[name]) :])
+        for name, (array, _) in arrays.items()
+    }
     out = numpy.empty(leading, _c.ESTIMATE)
     workspace = _c.workspace(_c.cv_workspace_size(_c.address(config), n))
     samples = _c.Samples(n=n)
     each = max(1, CHUNK // n)
-    if not all(array.flags.c_contiguous for array in wide):
+    if not all(array.flags.c_contiguous for array in wide.values()):
         each = max(1, min(each, COPIED // (n * (d + config.channels))))
+    if count:
+        # The library takes controls of one integral.
+        each = 1
     for first in range(0, out.size, each):
         some = range(first, min(first + each, out.size))
-        # Names keep copies alive during the call.
-        u, f = (_integrals(array, len(leading), some) for array in wide)
-        samples.u, samples.f = _c.data(u), _c.data(f)
+        # The names keep copies alive during the call.
+        held = {name: _integrals(array, len(leading), some) for name, array in wide.items()}
+        for name, array in held.items():
+            setattr(samples, name, _c.data(array))
         status = _c.cv_estimate(
             _c.address(config),
             _c.address(samples),
@@ -138,8 +191,10 @@ def image_estimate(
     edges: int = 0,
     stratified: bool = False,
     channels: bool = False,
+    ridge: float | None = None,
     window: int = 8,
     stride: int | None = None,
+    unordered: bool = False,
     threads: int = 1,
 ) -> Estimate:
     """Estimates every pixel of an image, by fits that neighbouring pixels share. One sample in each pixel is enough.
@@ -156,9 +211,13 @@ def image_estimate(
         edges: where two coordinates that pick a point of a light begin, counted from 1; 0: nowhere. With 4 and more
             samples fits then follow shadows' edges in them. "robust" and "k_fold" use it.
         stratified: whether each pixel's points are, `Sampler`'s say.
+        ridge: strength per sample, above 0; None: the default. With one, and without `known`, "robust" is exactly
+            unbiased, too, and never prefers the mean.
         window: width and height of the windows that share a fit, 1 to 32 pixels; over all frames at most 1,024.
         stride: pixels from one window to the next; None: half of a window.
-        threads: how many share the rows of pixels; the result has the same bits.
+        unordered: whether pixels have no places, as points of a cloud: all of one surface share a fit, with `surfaces`
+            at most 1,024 pixels in all. Their order must not follow a picture.
+        threads: how many share the rows of pixels, unless `unordered`; the result has the same bits.
 
     Returns:
         An `Estimate`, of shape (height, width), with `channels` of (height, width, c); frames as u.
@@ -176,14 +235,14 @@ def image_estimate(
     _arrays.one_of("estimator", estimator, dict.fromkeys(get_args(ImageEstimator)))
     if known is not None and estimator == "k_fold":
         raise ValueError("known is given, and estimator is 'k_fold': with known it must be 'robust' or 'leave_one_out'")
-    config = configure(order, estimator, basis, d, dims, slices, stratified, *own)
+    if isinstance(ridge, str):
+        raise TypeError(f"ridge is {ridge!r}: a number is expected, or None")
+    config = configure(order, estimator, basis, d, dims, slices, stratified, *own, ridge=ridge)
     config.edges = _arrays.integer("edges", edges, 0, max(0, config.dims - 1 - (config.slices > 1)))
     image = _c.Image(width=pixels[-1], height=pixels[-2], frames=pixels[0] if len(pixels) == 3 else 1)
     window = image.window = _arrays.integer("window", window, 1, 32)
     image.stride = 0 if stride is None else _arrays.integer("stride", stride, 1, window)
-    words = _c.wrong(image)
-    if words:
-        raise ValueError(f"{words}; u has the shape {u.shape}")
+    image.unordered = bool(unordered)
     samples = _c.Samples(u=_c.data(u), f=_c.data(f), n=n)
     kept = []
 
@@ -205,11 +264,15 @@ def image_estimate(
             give(place, name, checked(name, array), shape)
     if (known is None) != (known_integrals is None):
         raise ValueError("known and known_integrals belong together: one of them is None")
+    words = _c.wrong(image)
+    if words:
+        raise ValueError(f"{words}; u has the shape {u.shape}")
 
     def rows(wanted, held=(u, f, kept)):
         """The status, and what the library writes for rows of pixels. A thread that is interrupted holds the arrays."""
         part = _c.Image.from_buffer_copy(image)
-        part.wanted = _c.Rectangle(0, wanted.start, image.width, len(wanted))
+        if not image.unordered:
+            part.wanted = _c.Rectangle(0, wanted.start, image.width, len(wanted))
         workspace = _c.workspace(_c.cv_image_workspace_size(_c.address(config), _c.address(part), _c.address(samples)))
         out = numpy.empty((*pixels[:-2], len(wanted), pixels[-1]), _c.ESTIMATE)
         status = _c.cv_image_estimate(
@@ -224,7 +287,7 @@ def image_estimate(
 
     # Whole windows: those at the borders of rows are fitted to twice.
     threads = _arrays.integer("threads", threads, 1, 1024)
-    each = window * -(-image.height // (window * threads))
+    each = image.height if unordered else window * -(-image.height // (window * threads))
     wanted = [range(y, min(y + each, image.height)) for y in range(0, image.height, each)]
     if len(wanted) == 1:
         found = [rows(wanted[0])]
@@ -238,11 +301,20 @@ def image_estimate(
     return _result(out, channels, config.channels)
 
 
-def configure(order, estimator, basis, d, dims, slices, stratified, channels=1):
+def configure(
+    order, estimator, basis, d, dims, slices, stratified, channels=1, *, controls=0, ridge=None, folds=None, solver="auto"
+):
     """The library's configuration, each field refused by its name."""
     config = _c.default_config()
     config.estimator = _arrays.one_of("estimator", estimator, _c.ESTIMATORS)
     config.basis = _arrays.one_of("basis", basis, _c.BASES)
+    config.solver = _arrays.one_of("solver", solver, _c.SOLVERS)
+    config.controls = _arrays.integer("the number of controls", controls, 0, _c.MAX_CONTROLS)
+    config.folds = 0 if folds is None else _arrays.integer("folds", folds, 2, 16)
+    if isinstance(ridge, str):
+        config.ridge = _arrays.one_of("ridge", ridge, {"auto": _c.CONSTANTS["NF_RIDGE_AUTO"]})
+    elif ridge is not None:
+        config.ridge = _arrays.number("ridge", ridge, *RIDGES)
     config.order = _arrays.integer("order", order, 0, _c.MAX_ORDER)
     config.slices = _arrays.integer("slices", slices, 1, _c.MAX_TERMS - 1)
     config.stratified = bool(stratified)
@@ -251,10 +323,12 @@ def configure(order, estimator, basis, d, dims, slices, stratified, channels=1):
     config.dims = d if dims is None else _arrays.integer("dims", dims, 1, min(d, _c.MAX_DIMS))
     config.stride = d
     config.channels = _arrays.integer("the number of f's channels", channels, 1, _c.MAX_CHANNELS)
-    if _c.wrong(config):
-        # All else was checked: it has too many terms.
+    wrong = _c.wrong(config)
+    if wrong:
         own = config.slices if config.slices > 1 else 0
-        terms = math.comb(config.dims - bool(own) + config.order, config.order) + own
+        terms = math.comb(config.dims - bool(own) + config.order, config.order) + own + config.controls
+        if terms <= _c.MAX_TERMS:
+            raise ValueError(f"{wrong}: estimator is {estimator!r}, solver {solver!r}, ridge {ridge}, controls {controls}")
         words = f"order {order} in {config.dims} dims with {slices} slices makes {terms} terms: at most {_c.MAX_TERMS}"
         while config.order > 1 and _c.wrong(config):
             config.order -= 1

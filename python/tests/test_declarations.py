@@ -9,7 +9,7 @@ from typing import get_args
 import pytest
 
 import noisefloor
-from noisefloor import _c, _estimate
+from noisefloor import _c, _estimate, _mis
 from noisefloor.__main__ import PLACES
 
 COMPILER = shutil.which("cc")
@@ -60,6 +60,8 @@ def test_others_are_refused(right, wrong, tmp_path):
 
 def test_choices_are_the_librarys():
     assert get_args(_estimate.Basis) == tuple(_c.BASES)
+    assert get_args(_estimate.Solver) == tuple(_c.SOLVERS)
+    assert get_args(_mis.MISSolver) == tuple(_c.OMIS_SOLVERS)
     assert sorted(get_args(_estimate.Estimator)) == sorted(_c.ESTIMATORS)
 
 

@@ -5,6 +5,7 @@ import threading
 import time
 import tracemalloc
 import warnings
+from typing import get_args
 
 import hypothesis
 import numpy
@@ -64,6 +65,38 @@ def test_leading_dimensions_broadcast(shapes, dims, n, channels):
         one = noisefloor.estimate(wide_u[at], wide_f[at], order=1, channels=channels > 0)
         for part, whole in zip(one, estimate):
             assert numpy.array_equal(part, numpy.asarray(whole)[at], equal_nan=True)
+
+
+def test_controls_of_known_integral():
+    """f is a combination of controls, and of what no sample tells: of order 0 nothing is left but that."""
+    u = samples(5, 30, 2)
+    controls = numpy.stack([numpy.sin(9 * u[..., 0]), u[..., 1] > 0.3], -1)
+    integrals = numpy.array([(1 - math.cos(9)) / 9, 0.7])
+    f = controls @ [2.0, -1.0] + 4
+    options = {"controls": controls, "control_integrals": integrals, "order": 0, "estimator": "least_squares"}
+    found = noisefloor.estimate(u, f, **options)
+    assert found.mean.shape == (5,) and numpy.allclose(found.mean, integrals @ [2.0, -1.0] + 4, atol=1e-5)
+    one = noisefloor.estimate(u[2], f[2], **options | {"controls": controls[2]})
+    assert one.mean == found.mean[2]
+    # Integrals of their own, and channels.
+    each = integrals + numpy.arange(5)[:, None]
+    moved = noisefloor.estimate(u, f[..., None] * [1, 2], channels=True, **options | {"control_integrals": each})
+    assert numpy.allclose(moved.mean, (each @ [2.0, -1.0] + 4)[:, None] * [1, 2], atol=1e-4)
+    robust = noisefloor.estimate(u, f, controls=controls, control_integrals=integrals)
+    assert numpy.isfinite(robust.mean).all() and (robust.std_error < 0.2).all()
+
+
+def test_ridge_folds_and_solver():
+    u = samples(200, 2)
+    f = smooth(u)
+    default = noisefloor.estimate(u, f, estimator="leave_one_out")
+    assert noisefloor.estimate(u, f, estimator="leave_one_out", ridge=0.01).mean == pytest.approx(default.mean, rel=1e-6)
+    for ridge in (2e-5, "auto"):
+        assert noisefloor.estimate(u, f, estimator="leave_one_out", ridge=ridge).std_error < default.std_error
+    assert noisefloor.estimate(u, f, estimator="k_fold") == noisefloor.estimate(u, f, estimator="k_fold", folds=4)
+    assert noisefloor.estimate(u, f, estimator="k_fold") != noisefloor.estimate(u, f, estimator="k_fold", folds=8)
+    fits = [noisefloor.estimate(u, f, estimator="least_squares", solver=name).mean for name in get_args(noisefloor.Solver)]
+    assert numpy.allclose(fits, fits[0], rtol=1e-4)
 
 
 def test_what_is_broadcast_is_copied_in_parts(monkeypatch):
@@ -158,6 +191,38 @@ def test_no_integrals_and_very_many():
         ((samples(4, 2), samples(4, 5)), {"channels": True}, r"channels is 5: 4 are the most; .*moveaxis\(f, -1, 0\)"),
         ((samples(4, 2), samples(4, 0)), {"channels": True}, "f's channels is 0: it must be 1 to 4"),
         (([[1.0, 2.0], [1.0]], [1.0, 2.0]), {}, "u is no array of numbers"),
+        ((samples(4, 2), samples(4)), {"controls": samples(4, 1)}, "controls and control_integrals belong together"),
+        (
+            (samples(4, 2), samples(4)),
+            {"controls": samples(3, 1), "control_integrals": [0.5]},
+            r"controls has the shape \(3, 1\): \(\.\.\., 4, k\) is needed",
+        ),
+        (
+            (samples(4, 2), samples(4)),
+            {"controls": samples(4, 2), "control_integrals": [0.5]},
+            r"control_integrals has the shape \(1,\): \(\.\.\., 2\) is needed",
+        ),
+        (
+            (samples(4, 2), samples(4)),
+            {"controls": samples(4, 5), "control_integrals": samples(5)},
+            "the number of controls is 5: it must be 0 to 4",
+        ),
+        (
+            (samples(4, 2), samples(4)),
+            {"controls": [[1], [2], [math.inf], [3]], "control_integrals": [0.5]},
+            r"controls\[2, 0\] is inf: it must be finite",
+        ),
+        (
+            (samples(4, 2), samples(4)),
+            {"controls": samples(4, 1), "control_integrals": [0.5], "solver": "dual"},
+            "solver must not be the dual with controls: .* solver 'dual'",
+        ),
+        ((samples(4, 2), samples(4)), {"solver": "square_root"}, "solver must not be the square root but .* 'robust'"),
+        ((samples(4, 2), samples(4)), {"solver": "qr"}, "solver is 'qr': it must be one of 'auto', "),
+        ((samples(4097, 2), samples(4097)), {"solver": "dual"}, "solver is 'dual', and u has 4097 samples"),
+        ((samples(4, 2), samples(4)), {"ridge": 0}, "ridge is 0.0: it must be 1e-12 to 3e"),
+        ((samples(4, 2), samples(4)), {"ridge": "best"}, "ridge is 'best': it must be one of 'auto'"),
+        ((samples(4, 2), samples(4)), {"folds": 1}, "folds is 1: it must be 2 to 16"),
         ((samples(4, 2), numpy.ma.array(samples(4), mask=[0, 1, 0, 0])), {}, "f is a masked array"),
     ],
 )
@@ -248,6 +313,17 @@ def test_images_of_any_shape_type_stride_and_number_of_threads(size, frames, n, 
     assert all(numpy.array_equal(a, b, equal_nan=True) for a, b in zip(estimate, again))
 
 
+def test_pixels_without_places():
+    u, f, _ = image(2)
+    u, f = u.reshape(-1, 1, 2, u.shape[-1]), f.reshape(-1, 1, 2)
+    cloud = noisefloor.image_estimate(u, f, unordered=True, threads=3)
+    assert numpy.array_equal(cloud.mean, noisefloor.image_estimate(u, f, unordered=True).mean)
+    assert not numpy.array_equal(cloud.mean, noisefloor.image_estimate(u, f).mean)
+    with pytest.raises(ValueError, match="pixels with surfaces must be at most 1024 where they are unordered; u has"):
+        tiled = [numpy.concatenate([array] * 2) for array in (u, f)]
+        noisefloor.image_estimate(*tiled, unordered=True, surfaces=numpy.zeros((len(tiled[0]), 1), int))
+
+
 def test_windows_are_numbers_of_any_type():
     u, f, _ = image()
     expected = noisefloor.image_estimate(u, f, window=8, threads=32).mean
@@ -278,6 +354,7 @@ def test_known_light_leaves_no_error():
         ({"known": numpy.zeros((24, 24, 1))}, "known and known_integrals belong together"),
         ({"known": numpy.zeros((24, 24, 2))}, r"known has the shape \(24, 24, 2\)"),
         ({"edges": 2}, "edges is 2: it must be 0 to 1"),
+        ({"ridge": "auto"}, "ridge is 'auto': a number is expected, or None"),
         ({"window": 33}, "window is 33: it must be 1 to 32"),
         ({"stride": 9}, "stride is 9: it must be 1 to 8"),
         ({"threads": 0}, "threads is 0: it must be 1 to 1024"),

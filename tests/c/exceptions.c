@@ -289,7 +289,7 @@ static void weights(void)
         check_quiet("nf_mis", kind_names[kind], 0, 0, 0);
         if (nf_omis_init(work.start, work.bytes, 3, 1, counts, &omis) == NF_OK) {
             for (i = 0; i < 4; ++i)
-                count(nf_omis_add(omis, technique[i], pdf + 3 * i, value + i));
+                count(nf_omis_add(omis, pdf + 3 * i, technique + i, value + i, 1));
             count(nf_omis_solve(omis, solver, 0.0f, out, NULL));
             count(nf_omis_solve(omis, solver, 0.0f, NULL, alpha));
             count(nf_omis_next_batch(omis, solver, 0.0f, 0.5f));

@@ -12,7 +12,8 @@ static void add_samples_of(nf_omis *omis, nf_omis *other)
     for (i = 0; i < 30; ++i) {
         const float x = nf_rng_uniform(&rng);
         const float pdf[2] = {1.0f, 0.5f + x}, value[2] = {x * x, 1.0f - x};
-        CHECK_STATUS(nf_omis_add(i % 5 == 0 ? other : omis, i % 2, pdf, value), NF_OK);
+        const uint32_t technique = i % 2;
+        CHECK_STATUS(nf_omis_add(i % 5 == 0 ? other : omis, pdf, &technique, value, 1), NF_OK);
         if (i == 14)
             CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_PLAIN, 0.0f, 0.5f), NF_OK);
     }
@@ -99,29 +100,36 @@ static void errors(void)
     nf_omis *omis = make(&m), *other = NULL, *odd = (nf_omis *)misaligned(m.start);
     const float nan = not_a_number(), infinite = infinity_f();
     float pdf[2] = {1.0f, 1.0f}, value[2] = {1.0f, 2.0f}, out[4];
+    uint32_t technique = 0;
     size_t i;
     add_samples_of(omis, omis);
     before = memory_new(m.bytes);
     memcpy(before.start, m.start, m.bytes);
 
-    CHECK_STATUS(nf_omis_add(NULL, 0, pdf, value), NF_ERR_NULL);
-    CHECK_STATUS(nf_omis_add(odd, 0, pdf, value), NF_ERR_ALIGNMENT);
-    CHECK_STATUS(nf_omis_add(omis, 0, NULL, value), NF_ERR_NULL);
-    CHECK_STATUS(nf_omis_add(omis, 0, pdf, NULL), NF_ERR_NULL);
-    CHECK_STATUS(nf_omis_add(omis, 0, (const float *)misaligned(pdf), value), NF_ERR_ALIGNMENT);
-    CHECK_STATUS(nf_omis_add(omis, 2, pdf, value), NF_ERR_RANGE);
-    CHECK_STATUS(nf_omis_add(omis, UINT32_MAX, pdf, value), NF_ERR_RANGE);
+    CHECK_STATUS(nf_omis_add(NULL, pdf, &technique, value, 1), NF_ERR_NULL);
+    CHECK_STATUS(nf_omis_add(odd, pdf, &technique, value, 1), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_omis_add(omis, NULL, &technique, value, 1), NF_ERR_NULL);
+    CHECK_STATUS(nf_omis_add(omis, pdf, NULL, value, 1), NF_ERR_NULL);
+    CHECK_STATUS(nf_omis_add(omis, pdf, &technique, NULL, 1), NF_ERR_NULL);
+    CHECK_STATUS(nf_omis_add(omis, (const float *)misaligned(pdf), &technique, value, 1), NF_ERR_ALIGNMENT);
+    technique = 2;
+    CHECK_STATUS(nf_omis_add(omis, pdf, &technique, value, 1), NF_ERR_RANGE);
+    technique = UINT32_MAX;
+    CHECK_STATUS(nf_omis_add(omis, pdf, &technique, value, 1), NF_ERR_RANGE);
+    technique = 0;
     pdf[1] = nan;
-    CHECK_STATUS(nf_omis_add(omis, 0, pdf, value), NF_ERR_NOT_FINITE);
+    CHECK_STATUS(nf_omis_add(omis, pdf, &technique, value, 1), NF_ERR_NOT_FINITE);
     pdf[1] = infinite;
-    CHECK_STATUS(nf_omis_add(omis, 0, pdf, value), NF_ERR_NOT_FINITE);
+    CHECK_STATUS(nf_omis_add(omis, pdf, &technique, value, 1), NF_ERR_NOT_FINITE);
     pdf[1] = -1.0f;
-    CHECK_STATUS(nf_omis_add(omis, 0, pdf, value), NF_ERR_RANGE);
+    CHECK_STATUS(nf_omis_add(omis, pdf, &technique, value, 1), NF_ERR_RANGE);
     pdf[1] = 0.0f;
-    CHECK_STATUS(nf_omis_add(omis, 1, pdf, value), NF_ERR_RANGE);
+    technique = 1;
+    CHECK_STATUS(nf_omis_add(omis, pdf, &technique, value, 1), NF_ERR_RANGE);
+    technique = 0;
     pdf[1] = 1.0f;
     value[1] = nan;
-    CHECK_STATUS(nf_omis_add(omis, 0, pdf, value), NF_ERR_NOT_FINITE);
+    CHECK_STATUS(nf_omis_add(omis, pdf, &technique, value, 1), NF_ERR_NOT_FINITE);
     value[1] = 2.0f;
 
     CHECK_REFUSED(nf_omis_solve(NULL, NF_OMIS_RIDGE, 0.0f, out, NULL), NF_ERR_NULL, out);
@@ -171,10 +179,18 @@ static void errors(void)
         memset(m2.start, i == 0 ? 0 : POISON, m2.bytes);
         CHECK_STATUS(nf_omis_merge(omis, other), NF_ERR_STATE);
         CHECK_STATUS(nf_omis_merge(other, omis), NF_ERR_STATE);
-        CHECK_STATUS(nf_omis_add(other, 0, pdf, value), NF_ERR_STATE);
+        CHECK_STATUS(nf_omis_add(other, pdf, &technique, value, 1), NF_ERR_STATE);
         CHECK_REFUSED(nf_omis_solve(other, NF_OMIS_RIDGE, 0.0f, out, NULL), NF_ERR_STATE, out);
         CHECK_REFUSED(nf_omis_solve(other, NF_OMIS_RIDGE, 0.0f, NULL, out), NF_ERR_STATE, out);
         CHECK_STATUS(nf_omis_next_batch(other, NF_OMIS_RIDGE, 0.0f, 1.0f), NF_ERR_STATE);
+    }
+    {
+        /* One of two is refused: neither is added. */
+        static const float densities[4] = {1.0f, 1.0f, 1.0f, 0.0f}, values[4] = {1.0f, 2.0f, 3.0f, 4.0f};
+        static const uint32_t drawn[2] = {0, 1};
+        CHECK_STATUS(nf_omis_add(omis, densities, drawn, values, 2), NF_ERR_RANGE);
+        CHECK_STATUS(nf_omis_add(omis, densities, drawn, values, SIZE_MAX), NF_ERR_RANGE);
+        CHECK_STATUS(nf_omis_add(omis, NULL, NULL, NULL, 0), NF_OK);
     }
     CHECK(memcmp(before.start, m.start, m.bytes) == 0);
     memory_free(&m);
@@ -185,7 +201,8 @@ static void errors(void)
 static nf_status add(void *object)
 {
     static const float ones[2] = {1.0f, 1.0f};
-    return nf_omis_add((nf_omis *)object, 0, ones, ones);
+    static const uint32_t technique = 0;
+    return nf_omis_add((nf_omis *)object, ones, &technique, ones, 1);
 }
 
 /* Bytes of another build of the library, which may mean something else by them. */

@@ -482,6 +482,25 @@ static void mis()
     SUCCEED(omis.alpha(found));
     SUCCEED(omis.next_batch(nf::optimal_mis::solver::balance, 0.0f, 0.5f));
     CHECK(CODE(omis.add(0, {pdf, 1}, value)) == nf::status::length);
+    {
+        // Many at once have the bits of one after the other.
+        const float densities[6] = {1.0f, 0.5f, 1.0f, 1.5f, 1.0f, 0.0f}, values[3] = {3.0f, 4.0f, 5.0f};
+        const std::uint32_t drawn[3] = {0, 1, 0};
+        std::array<std::uint64_t, 64> apart{}, together{};
+        nf::optimal_mis one = value_of(nf::optimal_mis::create(counts, 1, apart));
+        nf::optimal_mis all = value_of(nf::optimal_mis::create(counts, 1, together));
+        for (std::size_t i = 0; i < 3; ++i)
+            SUCCEED(one.add(drawn[i], {densities + 2 * i, 2}, {values + i, 1}));
+        SUCCEED(all.add(densities, drawn, values));
+        CHECK(apart == together);
+        SUCCEED(all.add({densities, 0}, {drawn, 0}, {values, 0}));
+        CHECK(CODE(all.add({densities, 4}, drawn, values)) == nf::status::length);
+        CHECK(CODE(all.add(densities, drawn, {values, 2})) == nf::status::length);
+        // The last has none of the second technique: nothing is added.
+        const std::uint32_t wrong[3] = {0, 1, 1};
+        CHECK(CODE(all.add(densities, wrong, values)) == nf::status::range);
+        CHECK(apart == together);
+    }
     CHECK(CODE(omis.solve({})) == nf::status::length);
     CHECK(CODE(omis.alpha({found.data(), 1})) == nf::status::length);
     CHECK(CODE(omis.merge(omis)) == nf::status::range);

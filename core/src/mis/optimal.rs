@@ -146,6 +146,17 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         Ok(())
     }
 
+    /// Whether [`OptimalMis::add`] would take a sample, so that of many either all are added or none.
+    ///
+    /// # Errors
+    /// Those of [`OptimalMis::add`].
+    pub fn check(&self, technique: usize, pdf: &[f32], value: &[f32]) -> Result<(), Error> {
+        ensure(pdf.len() == self.techniques && value.len() == self.integrals, Error::Length)?;
+        let own = *pdf.get(technique).ok_or(Error::Range)?;
+        ensure(pdf.iter().chain(value).all(|x| x.is_finite()), Error::NotFinite)?;
+        ensure(own > 0.0 && pdf.iter().all(|&p| p >= 0.0), Error::Range)
+    }
+
     fn system(&self, solver: Solver) -> Result<System, Error> {
         solver.check()?;
         let (sums, rounds) = self.sums()?;
@@ -191,11 +202,8 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// a negative density, or a density of 0 for the technique that drew the sample; [`Error::NotFinite`] for NaN or
     /// infinity among the densities (combine delta distributions outside) or values.
     pub fn add(&mut self, technique: usize, pdf: &[f32], value: &[f32]) -> Result<(), Error> {
+        self.check(technique, pdf, value)?;
         let techniques = self.techniques;
-        ensure(pdf.len() == techniques && value.len() == self.integrals, Error::Length)?;
-        let own = *pdf.get(technique).ok_or(Error::Range)?;
-        ensure(pdf.iter().chain(value).all(|x| x.is_finite()), Error::NotFinite)?;
-        ensure(own > 0.0 && pdf.iter().all(|&p| p >= 0.0), Error::Range)?;
         let sum: f64 = pdf.iter().zip(&self.counts).map(|(&p, &n)| f64::from(p) * f64::from(n)).sum();
         let mut ratio = Vector::default();
         ratio.iter_mut().zip(pdf).for_each(|(ratio, &p)| *ratio = f64::from(p) / sum);
