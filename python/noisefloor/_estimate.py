@@ -117,7 +117,8 @@ def estimate(
         if controls.ndim < 2 or controls.shape[-2] != n or controls.shape[-1] == 0:
             raise ValueError(f"controls has the shape {controls.shape}: (..., {n}, k) is needed, k from 1 to 4")
         if integrals.shape[-1:] != controls.shape[-1:]:
-            raise ValueError(f"control_integrals has the shape {integrals.shape}: (..., {controls.shape[-1]}) is needed")
+            words = f"control_integrals has the shape {integrals.shape}"
+            raise ValueError(f"{words}: (..., {controls.shape[-1]}) is needed")
         arrays |= {"controls": (controls, 2), "control_integrals": (integrals, 1)}
     count = 0 if controls is None else controls.shape[-1]
     config = configure(
@@ -302,7 +303,19 @@ def image_estimate(
 
 
 def configure(
-    order, estimator, basis, d, dims, slices, stratified, channels=1, *, controls=0, ridge=None, folds=None, solver="auto"
+    order,
+    estimator,
+    basis,
+    d,
+    dims,
+    slices,
+    stratified,
+    channels=1,
+    *,
+    controls=0,
+    ridge=None,
+    folds=None,
+    solver="auto",
 ):
     """The library's configuration, each field refused by its name."""
     config = _c.default_config()
@@ -328,7 +341,7 @@ def configure(
         own = config.slices if config.slices > 1 else 0
         terms = math.comb(config.dims - bool(own) + config.order, config.order) + own + config.controls
         if terms <= _c.MAX_TERMS:
-            raise ValueError(f"{wrong}: estimator is {estimator!r}, solver {solver!r}, ridge {ridge}, controls {controls}")
+            raise ValueError(f"{wrong}; estimator is {estimator!r}, ridge {ridge!r} and solver {solver!r}")
         words = f"order {order} in {config.dims} dims with {slices} slices makes {terms} terms: at most {_c.MAX_TERMS}"
         while config.order > 1 and _c.wrong(config):
             config.order -= 1

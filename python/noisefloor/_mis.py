@@ -62,7 +62,8 @@ def optimal_mis(
     pdf, f = _arrays.check_positive("pdf", given["pdf"]), _arrays.check_finite("f", given["f"])
     values = 1 if channels else 0
     technique = _arrays.array("technique", technique)
-    if pdf.ndim < 2 or technique.ndim < 1 or f.ndim < 1 + values or 0 in pdf.shape[-2:] or channels and 0 in f.shape[-1:]:
+    are_there = pdf.ndim > 1 and technique.ndim > 0 and f.ndim > values
+    if not are_there or 0 in pdf.shape[-2:] + f.shape[f.ndim - values :]:
         raise ValueError(
             f"pdf has the shape {pdf.shape}, technique {technique.shape} and f {f.shape}: (..., n, J), (..., n) and "
             f"(..., n{', c' * values}) are needed, of at least 1 each"

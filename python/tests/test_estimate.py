@@ -90,12 +90,14 @@ def test_ridge_folds_and_solver():
     u = samples(200, 2)
     f = smooth(u)
     default = noisefloor.estimate(u, f, estimator="leave_one_out")
-    assert noisefloor.estimate(u, f, estimator="leave_one_out", ridge=0.01).mean == pytest.approx(default.mean, rel=1e-6)
+    same = noisefloor.estimate(u, f, estimator="leave_one_out", ridge=0.01)
+    assert same.mean == pytest.approx(default.mean, rel=1e-6)
     for ridge in (2e-5, "auto"):
         assert noisefloor.estimate(u, f, estimator="leave_one_out", ridge=ridge).std_error < default.std_error
     assert noisefloor.estimate(u, f, estimator="k_fold") == noisefloor.estimate(u, f, estimator="k_fold", folds=4)
     assert noisefloor.estimate(u, f, estimator="k_fold") != noisefloor.estimate(u, f, estimator="k_fold", folds=8)
-    fits = [noisefloor.estimate(u, f, estimator="least_squares", solver=name).mean for name in get_args(noisefloor.Solver)]
+    names = get_args(noisefloor.Solver)
+    fits = [noisefloor.estimate(u, f, estimator="least_squares", solver=name).mean for name in names]
     assert numpy.allclose(fits, fits[0], rtol=1e-4)
 
 
@@ -215,7 +217,7 @@ def test_no_integrals_and_very_many():
         (
             (samples(4, 2), samples(4)),
             {"controls": samples(4, 1), "control_integrals": [0.5], "solver": "dual"},
-            "solver must not be the dual with controls: .* solver 'dual'",
+            "solver must not be the dual with controls; .* solver 'dual'",
         ),
         ((samples(4, 2), samples(4)), {"solver": "square_root"}, "solver must not be the square root but .* 'robust'"),
         ((samples(4, 2), samples(4)), {"solver": "qr"}, "solver is 'qr': it must be one of 'auto', "),
