@@ -219,8 +219,7 @@ NFS_FUNCTION nfs_point nfs_find(nfs s)
     p.y = at >> 16;
     p.order = s.order;
     if (s.domain != 0u) {
-        /* Column * 0x2c1b3c6d + row * 0x297a2d39. */
-        nfs_uint h = s.domain + p.x * 0x2c1b3c6du + p.y * 0xed0d2d39u;
+        nfs_uint h = s.domain + ((at + s.domain) & 0xfff8fff8u) * 0x2c1b3c6du; /* of 8 x 8 pixels */
         h = (h ^ (h >> 15)) * 0x735a2d97u;
         h ^= h >> 15;
         p.order ^= p.order * (h << 1);

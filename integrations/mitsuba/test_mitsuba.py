@@ -114,7 +114,7 @@ class Recorded(unittest.TestCase):
         domain[:64] = 0
         for scrambled, few in itertools.product((False, True), repeat=2):
             index = every % 64 if few else every
-            state = mi.UInt32(domain), mi.UInt32(17), mi.UInt32(40001), dr.brev(mi.UInt32(index))
+            state = mi.UInt32(domain), mi.UInt32(17 | 40001 << 16), dr.brev(mi.UInt32(index))
             u = [*_sampler.draw(*state, False, scrambled, few), *_sampler.draw(*state, True, scrambled, few)]
             for k, (d, i) in enumerate(zip(domain, index)):
                 expected = drawn(_c.Sampler(int(d), int(i), 17, 40001, int(scrambled)), 4)
@@ -185,7 +185,7 @@ class Recorded(unittest.TestCase):
         b = np.array([np.array(other.next_1d()) for _ in range(3)])
         np.testing.assert_array_equal(a, b)
         indices = lambda it: {getattr(it, n).index for n in ("x", "y", "index", "base")}
-        dr.eval(one.x, one.y, one.index, one.base)
+        dr.eval(one.at, one.index, one.base)
         other.advance()
         self.assertEqual((other.wavefront_size(), other.sample_count()), (one.wavefront_size(), 4))
         np.testing.assert_array_equal(np.array(one.next_1d()), fill([5], 8, 8, 4, 3).reshape(-1, 2)[:, 0])
@@ -198,7 +198,7 @@ class Recorded(unittest.TestCase):
         one = sampler(64, sample_count=4)
         one.seed(3, 64 * 64 * 4)
         one.seed(0, 1)
-        self.assertEqual([len(a) for a in (one.x, one.y, one.index)], [1, 1, 1])
+        self.assertEqual([len(a) for a in (one.at, one.index)], [1, 1])
 
     def test_a_film_of_one_pixel_has_seeds(self):
         drawn = []

@@ -57,16 +57,16 @@ def _child(domain, key):
     return dr.select(h == 0, mi.UInt32(0x2C9277B5), h)
 
 
-def draw(domain, x, y, first, second=False, scrambled=False, few=False):
-    """Two numbers of nf_sampler_draw(), of four the second two: for arrays of domains, pixels (hashed, if white) and
-    reversed indices. With `few`, where all indices are below 2^BITS."""
-    random = domain + x * 0x2C1B3C6D + y * 0x297A2D39
+def draw(domain, at, first, second=False, scrambled=False, few=False):
+    """Two numbers of nf_sampler_draw(), of four the second two: for arrays of domains, pixels (the row in the upper
+    half; hashed, if white) and reversed indices. With `few`, where all indices are below 2^BITS."""
+    random = domain + ((at + domain) & 0xFFF8FFF8) * 0x2C1B3C6D
     random = (random ^ (random >> 15)) * 0x735A2D97
     random ^= random >> 15
     ordered = first ^ (first * (random << 1))
     ordered = ordered * ((random >> 15) | 1)
     first = dr.select(domain == 0, first, ordered)
-    x, y = _move(domain, x, y)
+    x, y = _move(domain, at, at >> 16)
     if second:
         x, y, first = x + 11, y + 5, _multiply(first)
     values = _pair(((y & (SIZE - 1)) << 5) | (x & (SIZE - 1)), first, few)
@@ -179,7 +179,7 @@ def kind():
                 )
 
         def _clear(self):
-            self.x, self.y, self.index, self.base, self.dimension = (mi.UInt32(0) for _ in range(5))
+            self.at, self.index, self.base, self.dimension = (mi.UInt32(0) for _ in range(4))
             self.requests = 0  # right outside of recorded loops only
 
         def seed(self, seed, wavefront_size=2**32 - 1):
@@ -218,10 +218,9 @@ def kind():
             self.index = wave - pixel * self.per_wave
             row = pixel // width
             x, y = self.corner
-            self.x, self.y = (pixel - row * width + x) & 0xFFFF, (row + y) & 0xFFFF
+            self.at = ((pixel - row * width + x) & 0xFFFF) | ((row + y) << 16)
             if self.white:
-                at = _mix((self.x | (self.y << 16)) * 0x9E3779B9)
-                self.x, self.y = at & 0xFFFF, at >> 16
+                self.at = _mix(self.at * 0x9E3779B9)
 
         def advance(self):
             self.index = self.index + self.per_wave
@@ -229,7 +228,7 @@ def kind():
             self.most += self.per_wave
 
         def schedule_state(self):
-            dr.schedule(self.x, self.y, self.index, self.base, self.dimension)
+            dr.schedule(self.at, self.index, self.base, self.dimension)
 
         def _copy(self, wavefront_size=0):
             props = mi.Properties()
@@ -253,7 +252,7 @@ def kind():
             other = self._copy(self.wavefront_size())
             other.per_wave = self.per_wave
             # Arrays of their own: a loop that changes one sampler must not change the other.
-            for name in ("x", "y", "index", "base", "dimension"):
+            for name in ("at", "index", "base", "dimension"):
                 setattr(other, name, mi.UInt32(getattr(self, name)))
             other.requests, other.most = self.requests, self.most
             return other
@@ -264,7 +263,7 @@ def kind():
             self.dimension = self.dimension + count
             self.requests += 1
             few = max(self.most, self.sample_count()) <= 1 << BITS
-            return draw(domain, self.x, self.y, dr.brev(self.index), on_lens, self.scramble, few)
+            return draw(domain, self.at, dr.brev(self.index), on_lens, self.scramble, few)
 
         def next_1d(self, active=True):
             return self._draw(1)[0]
