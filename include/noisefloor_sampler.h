@@ -38,8 +38,13 @@ typedef uint nfs_uint;
 #define NFS_REVERSE(a) bitfieldReverse(a)
 #define NFS_INSERT(low, high, at, bits) bitfieldInsert(low, high, at, bits)
 #define NFS_SIGN(a, k) uint(bitfieldExtract(int(a), k, 1))
-#define nfs_uint highp uint /* in ES, fragment shaders have less by default */
+#if defined(GL_ES) /* fragment shaders have less by default */
+#define nfs_uint highp uint
 #define nfs_float highp float
+#else
+#define nfs_uint uint
+#define nfs_float float
+#endif
 #elif defined(__METAL_VERSION__)
 #define NFS_FUNCTION static inline
 #define NFS_REVERSE(a) metal::reverse_bits(a)
@@ -168,7 +173,6 @@ NFS_FUNCTION nfs_uint nfs_pascal(nfs_uint order)
     return second;
 }
 
-/* nf_sampler_pixel() */
 NFS_FUNCTION nfs nfs_pixel(nfs_uint x, nfs_uint y, nfs_uint frame, nfs_uint index)
 {
     nfs s;
@@ -179,7 +183,6 @@ NFS_FUNCTION nfs nfs_pixel(nfs_uint x, nfs_uint y, nfs_uint frame, nfs_uint inde
     return s;
 }
 
-/* nf_sampler_white() */
 NFS_FUNCTION nfs nfs_white(nfs_uint x, nfs_uint y, nfs_uint frame, nfs_uint index)
 {
     nfs s = nfs_pixel(x, y, frame, index);
@@ -187,14 +190,12 @@ NFS_FUNCTION nfs nfs_white(nfs_uint x, nfs_uint y, nfs_uint frame, nfs_uint inde
     return s;
 }
 
-/* nf_sampler_domain() */
 NFS_FUNCTION nfs nfs_domain(nfs s, nfs_uint key)
 {
     s.domain = nfs_child(s.domain, key);
     return s;
 }
 
-/* nf_sampler_scramble() */
 NFS_FUNCTION nfs nfs_scramble(nfs s, nfs_uint seed)
 {
     if (seed != 0u) {

@@ -26,12 +26,14 @@ foreach(licence IN ITEMS LICENSE-MIT LICENSE-APACHE THIRD_PARTY.md)
     file(REAL_PATH "${licence}" licence)
     install(FILES "${licence}" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 endforeach()
-# The tiles as files: for programs that read them (nf_tile_from_bytes), in place of the library's own.
+# The tiles as files: for programs that read them (nf_tile_from_bytes), in place of the library's own; and the table of
+# the sampler, for shaders.
 # Outside the workspace there are none.
 set(tilesdir "")
 if(EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/../core/tiles")
     set(tiles "${CMAKE_INSTALL_DATADIR}/noisefloor/tiles")
-    install(DIRECTORY ../core/tiles/ DESTINATION "${tiles}" FILES_MATCHING PATTERN "*.nft")
+    install(DIRECTORY ../core/tiles/ DESTINATION "${tiles}" FILES_MATCHING PATTERN "*.nft"
+        PATTERN "*.bin")
     set(tilesdir "tilesdir=${pc_DATADIR}/noisefloor/tiles")
 endif()
 

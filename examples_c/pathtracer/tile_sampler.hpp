@@ -143,11 +143,14 @@ inline uint32_t frame_of(const SamplerSetup &setup, uint32_t tile_frames)
     return setup.frame + static_cast<uint32_t>((setup.seed - 1) * block);
 }
 
-// The library's own: nothing to choose.
+// The library's own: nothing to choose. Frames of few samples are shown averaged with those before them: so many of them
+// as make 16 samples count their samples on.
 class DefaultSampler final : public Sampler {
 public:
     explicit DefaultSampler(const SamplerSetup &setup)
-        : setup_(setup), frame_(frame_of(setup, 1)),
+        : setup_(setup), together_(16 % setup.samples == 0 ? 16 / setup.samples : 1),
+          frame_(frame_of(setup, 1) - setup.frame + setup.frame / together_),
+          first_(setup.frame % together_ * setup.samples),
           scramble_(setup.scramble ? static_cast<uint32_t>(mix(setup.seed)) | 1 : 0), groups_(group(setup.domains, 4))
     {
     }
@@ -156,12 +159,12 @@ public:
     void range(uint32_t x, uint32_t y, uint32_t first, uint32_t count, float *u) const override
     {
         for (uint32_t i = first; i < first + count; ++i, u += setup_.dims)
-            draw_groups(nf_sampler_scramble(nf_sampler_pixel(x, y, frame_, i), scramble_), groups_, u);
+            draw_groups(nf_sampler_scramble(nf_sampler_pixel(x, y, frame_, first_ + i), scramble_), groups_, u);
     }
 
 private:
     SamplerSetup setup_;
-    uint32_t frame_, scramble_;
+    uint32_t together_, frame_, first_, scramble_;
     std::vector<Group> groups_;
 };
 

@@ -211,6 +211,22 @@ fn a_pixel_that_is_no_density_is_refused_inverted_too() {
     }
 }
 
+/// What a lossy codec leaves of black is black.
+#[test]
+fn values_a_little_below_0_are_0() {
+    let place = Place::new();
+    let at = |value| Rgb32FImage::from_fn(8, 8, |x, _| Rgb([if x < 4 { value } else { 0.5 }; 3]));
+    for (value, name) in [(0.0, "black.exr"), (-4e-4, "nearly.exr")] {
+        at(value).save(place.path(name)).unwrap();
+    }
+    for options in ["", "--invert"] {
+        for name in ["black", "nearly"] {
+            place.succeed(&format!("points -n 20 --density {name}.exr {options} --out {name}.txt {FAST}"));
+        }
+        assert_eq!(place.read("black.txt"), place.read("nearly.txt"));
+    }
+}
+
 /// Half a picture in half a colour: light that is already multiplied by alpha, and values that are not.
 #[test]
 fn transparent_halves() {

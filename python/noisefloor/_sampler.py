@@ -91,7 +91,8 @@ class QMCEngine:
     them. No subclass of theirs: what scipy itself does with engines takes its own only.
 
     Args:
-        d: dims, 1 to 4. In 2 it is as good as `scipy.stats.qmc.Sobol`; in more that is the better engine.
+        d: dims, 1 to 4. Of edges in 2 it is as good as `scipy.stats.qmc.Sobol`, of what is smooth up to some 1,000
+            points; beyond, and in more dims, that is the better engine.
         seed: 0 to 2**32 - 1. None: another one each time. First points are one of few sequences: of 1,024 pairs, of
             2,048 fours, of some 500,000 of 64 points, so that means of few points are slightly biased over seeds. For
             error bars of repetitions take scipy's `Sobol`.

@@ -60,13 +60,14 @@ const WHITE: u32 = 2;
 
 impl Sampler {
     /// Sample `index` of pixel (x, y) in `frame`, any values of each. The root's numbers in frame 0 repeat every
-    /// [`table::SIZE`] pixels; elsewhere a pixel's samples are then in another order, from index 2 on. Indices 0 and 1
-    /// have no other: all numbers of a pixel, of every domain, follow from x and y modulo 32, and an image has 1,024
-    /// different vectors. What is seeded from numbers needs the pixel, too.
+    /// [`table::SIZE`] pixels; elsewhere samples are then in another order, from index 2 on, in each domain and 8 x 8
+    /// pixels. Indices 0 and 1 have no other: all numbers of a pixel, of every domain, follow from x and y modulo 32,
+    /// and an image has 1,024 different vectors. What is seeded from numbers needs the pixel, too.
     ///
     /// The samples of a pixel are one sequence, best at powers of two; take any number, and stop where you like. Each
-    /// frame is the table at another place, unrelated to the others. Where frames are averaged, by a viewer or by TAA,
-    /// leave the frame 0 and let the index count on.
+    /// frame is the table at another place, and otherwise unrelated to the others. Where frames are averaged, count the
+    /// index on: by a viewer in frame 0, by TAA up to 16 samples in each frame, of n samples frame k / 16 and indices
+    /// from k % 16 on, k being n times the number of frames so far.
     #[inline]
     pub const fn pixel(x: u32, y: u32, frame: u32, index: u32) -> Sampler {
         let domain = if frame == 0 { 0 } else { child(FRAMES, frame) };

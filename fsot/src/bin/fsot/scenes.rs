@@ -7,6 +7,7 @@ use fsot::metrics::scenes::{self, Count, Energies, Frames, PLACES, Plane, SceneT
 use fsot::random::stream;
 use fsot::read;
 use fsot::sampler::{sidecar, table};
+use noisefloor::sampler::Sampler;
 use noisefloor::tile::Shape;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -48,6 +49,8 @@ pub(crate) fn run(folder: &Path, files: &[PathBuf]) -> Result<(String, Value)> {
     let mut judged = vec![
         Judged::new("independent".to_owned(), scenes::white(size, samples)),
         Judged::new("Owen-scrambled Sobol'".to_owned(), owen()),
+        Judged::new("a domain, frame 0".to_owned(), domain(samples, |number| [0, number])),
+        Judged::new("a domain, 16 a frame".to_owned(), domain(FRAMES_OF, |number| [number / 16, number % 16])),
     ];
     for path in files {
         judged.push(Judged::new(path.file_stem().unwrap_or_default().to_string_lossy().into_owned(), plane(path)?));
@@ -193,6 +196,17 @@ fn owen() -> Plane {
         })
     };
     Plane { size, samples, points: (0..(size * size) as u64).flat_map(pixel).collect() }
+}
+
+/// The library's sampler as a decision of a path draws from it: of each sample the frame and the index there.
+fn domain(samples: usize, at: fn(u32) -> [u32; 2]) -> Plane {
+    let size = PEERS.0;
+    let point = |(pixel, number)| {
+        let ([frame, index], [x, y]) = (at(number), [pixel % size, pixel / size].map(|place| place as u32));
+        Sampler::pixel(x, y, frame, index).domain(1).draw()
+    };
+    let samples_of = |pixel| (0..samples as u32).map(move |number| (pixel, number));
+    Plane { size, samples, points: (0..size * size).flat_map(samples_of).map(point).collect() }
 }
 
 /// The samples that a file stands for.

@@ -67,8 +67,8 @@ pub(super) fn measure(harness: &Harness) -> Result<Table> {
         let view = |frame| Ok(View { frame, ..harness.view(scene, plan.of("animation_size"), 1)? });
         let views = (0..last).map(view).collect::<Result<Vec<View>>>()?;
         let references = views.iter().map(|&view| harness.measurement.reference(view)).collect::<Result<Vec<_>>>()?;
-        let tiles = [("shifted tile", "tile 2D"), ("temporal tile", temporal)];
-        for (label, sampler) in ["random", "Owen-Sobol"].map(|name| (name, name)).into_iter().chain(tiles) {
+        let ours = [("default sampler", "default"), ("shifted tile", "tile 2D"), ("temporal tile", temporal)];
+        for (label, sampler) in ["random", "Owen-Sobol"].map(|name| (name, name)).into_iter().chain(ours) {
             let Some(sampler) = harness.measurement.renderer.sampler(sampler, spp) else { continue };
             let job = |&view: &View<'static>| Job { sampler: sampler.clone(), seeds, ..Job::new(view, spp, &["mc"]) };
             let jobs: Vec<Job> = views.iter().map(job).collect();
