@@ -733,7 +733,7 @@ public:
     optimal_mis() noexcept = default;
 
     // One sample. pdf[techniques], value[integrals]
-    returned<void> add(std::uint32_t technique, span<const float> pdf, span<const float> value)
+    returned<void> add(span<const float> pdf, std::uint32_t technique, span<const float> value)
     {
         return add(pdf, span<const std::uint32_t>(&technique, 1), value);
     }

@@ -83,7 +83,7 @@ pub unsafe extern "C" fn nf_omis_init(
 /// pdf[n * techniques]: the density of each technique at each point, finite, at least 0, that of the technique which
 /// drew it, technique[n], positive. value[n * integrals]: the integrands there, not divided by any density, finite.
 ///
-/// NF_ERR_RANGE: a technique or a density; NF_ERR_NOT_FINITE.
+/// NF_ERR_RANGE: a technique, a density, or more samples than a memory can hold; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_omis_add(
     omis: *mut nf_omis,
@@ -100,11 +100,7 @@ pub unsafe extern "C" fn nf_omis_add(
         // SAFETY: the caller passes arrays of the lengths that the object was made for, n times.
         let (pdf, technique, value) =
             unsafe { (convert::slice(pdf, pdfs)?, convert::slice(technique, n)?, convert::slice(value, values)?) };
-        // An object has at least one of each, which the compiler does not know.
-        let rows = pdf.chunks_exact(techniques.max(1)).zip(value.chunks_exact(integrals.max(1)));
-        let samples = technique.iter().zip(rows).map(|(&technique, (pdf, value))| (technique as usize, pdf, value));
-        samples.clone().try_for_each(|(technique, pdf, value)| omis.check(technique, pdf, value))?;
-        Ok(samples.clone().try_for_each(|(technique, pdf, value)| omis.add(technique, pdf, value))?)
+        Ok(omis.add_samples(pdf, technique, value)?)
     })())
 }
 

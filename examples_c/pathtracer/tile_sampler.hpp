@@ -143,8 +143,8 @@ inline uint32_t frame_of(const SamplerSetup &setup, uint32_t tile_frames)
     return setup.frame + static_cast<uint32_t>((setup.seed - 1) * block);
 }
 
-// The library's own: nothing to choose. Frames of few samples are shown averaged with those before them: so many of them
-// as make 16 samples count their samples on.
+// The library's own: nothing to choose. Frames of few samples are shown averaged with those before: as many of them as
+// make 16 samples count their samples on.
 class DefaultSampler final : public Sampler {
 public:
     explicit DefaultSampler(const SamplerSetup &setup)

@@ -168,26 +168,27 @@ fn png_size(bytes: &[u8]) -> Option<(u32, u32)> {
     (bytes.get(12..16)? == b"IHDR").then_some((number(16)?, number(20)?))
 }
 
-/// Of the largest value: what is negative by no more is 0. Lossy codecs and resampling filters leave such values.
-const UNDERSHOOT: f32 = 1e-3;
+/// Of the whole density: values below 0 that make no more are 0. Lossy codecs and resampling filters leave such.
+const UNDERSHOOT: f64 = 1e-3;
 
 /// A picture as a density for `points` points, and the SHA-256 of its file: its luma as it is stored (not linear
 /// light), or what is missing to white; transparent parts have none. Values beyond 1 (OpenEXR) are densities too, but
 /// not if inverted.
 ///
 /// # Errors
-/// As [`photo`]; a value that is negative by more than rounding; a density of 0 everywhere.
+/// As [`photo`]; values below 0 that are more than what codecs leave; a density of 0 everywhere.
 pub fn density(path: &Path, points: usize, invert: bool) -> Result<(ImageTarget, String)> {
     let (decoded, digest) = picture(path)?;
     let (premultiplied, picture) = (is_linear(&decoded), decoded.to_luma_alpha32f());
     drop(decoded);
     let (width, height) = picture.dimensions();
-    let least = -UNDERSHOOT * picture.pixels().map(|pixel| pixel.0[0]).fold(0.0, f32::max);
+    let sum = |sign: f32| picture.pixels().map(|pixel| f64::from((sign * pixel.0[0]).max(0.0))).sum::<f64>();
+    let is_undershoot = sum(-1.0) <= UNDERSHOOT * sum(1.0);
     let weights: Vec<f32> = picture
         .pixels()
         .map(|pixel| {
             let [luma, alpha]: [f32; 2] = pixel.0;
-            let luma = if (least..0.0).contains(&luma) { 0.0 } else { luma };
+            let luma = if is_undershoot && luma < 0.0 { 0.0 } else { luma };
             // A value that is refused is refused as it is.
             let inverted = invert && luma.is_finite() && luma >= 0.0;
             let (white, part) = if premultiplied { (alpha, 1.0) } else { (1.0, alpha) };

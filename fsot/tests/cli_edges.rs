@@ -225,6 +225,8 @@ fn values_a_little_below_0_are_0() {
         }
         assert_eq!(place.read("black.txt"), place.read("nearly.txt"));
     }
+    at(-6e-4).save(place.path("beyond.exr")).unwrap();
+    place.refuse(&format!("points -n 20 --density beyond.exr --out p.txt {FAST}"), "must be finite and not negative");
 }
 
 /// Half a picture in half a colour: light that is already multiplied by alpha, and values that are not.

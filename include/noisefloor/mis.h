@@ -81,7 +81,7 @@ nf_status nf_omis_init(void *memory, size_t bytes, uint32_t techniques, uint32_t
 // and 0 of the others.
 // pdf[n * techniques]: the density of each technique at each point, finite, at least 0, that of the technique which
 // drew it, technique[n], positive. value[n * integrals]: the integrands there, not divided by any density, finite.
-// NF_ERR_RANGE: a technique or a density; NF_ERR_NOT_FINITE.
+// NF_ERR_RANGE: a technique, a density, or more samples than a memory can hold; NF_ERR_NOT_FINITE.
 nf_status nf_omis_add(nf_omis *omis, const float *pdf, const uint32_t *technique, const float *value, size_t n);
 
 // Estimates the integrals from all samples so far, or the weights' coefficients alpha (2.15); NULL: not wanted.

@@ -27,7 +27,7 @@ typedef struct nf_sampler {
 } nf_sampler;
 
 // Sample `index` of pixel (x, y) in `frame`, any values of each. The samples of a pixel are one sequence, best at
-// powers of two. Where frames are averaged, count the index on in frame 0; of what moves, 16 samples in each frame.
+// powers of two. Where frames are averaged, count it on in frame 0; of what moves sample k is k % 16 of frame k / 16.
 //
 // At indices 0 and 1 the numbers of all domains repeat every 32 pixels: an image has 1,024 different vectors. Seeds of
 // further numbers need the pixel, too.

@@ -48,7 +48,7 @@ def plain(view, kind):
     return numbers if numbers.flags.aligned else numbers.copy()
 
 
-def warn_of_lost_digits(name, view, axis=None):
+def warn_of_lost_digits(name, view, axis=None, what="a constant"):
     """Warns where numbers, those along the axis say, as float32 are some thousand different ones at most, though they
     need not be; and where all are so small that float32 has too few digits for them."""
     if view.dtype.kind not in "fiu" or view.itemsize <= 4 or view.size == 0:
@@ -68,7 +68,7 @@ def warn_of_lost_digits(name, view, axis=None):
         lost = _are_near(low, high) & (low < high)
         if lost.any():
             least, most = low[numpy.argmax(lost)], high[numpy.argmax(lost)]
-            words = "which has 7 digits: subtract a constant, and add it to the mean"
+            words = f"which has 7 digits: subtract {what}, and add its integral to the mean"
     if words:
         told = f"{name} is {least:.9g} to {most:.9g}, and rounded to float32, {words}"
         warnings.warn(told, RuntimeWarning, stacklevel=3)

@@ -66,21 +66,23 @@ def estimate(
     Args:
         u: shape (..., n, d), 0 to 1: the coordinates of each sample.
         f: shape (..., n), finite; with `channels` (..., n, c), 1 to 4 of them. Leading dimensions broadcast with u's.
-        controls: shape (..., n, k): 1 to 4 functions of known integral at the samples, to be regressed as well.
+        controls: shape (..., n, k): 1 to 4 functions of known integral at the samples, to be regressed as well. Of many
+            integrals they take a call for each, some 70 microseconds.
         control_integrals: shape (k,), or (..., k): those integrals, over the unit cube.
         order: largest total degree of the functions, 0 to 7; 0 is the plain mean, or the controls alone. At most 136
             terms.
         estimator: "robust", never noticeably worse than the mean; "least_squares", for many samples per term, and for
-            Sobol points; "leave_one_out" and "k_fold", exactly unbiased; "gradient_descent"; "incremental".
+            Sobol points; "leave_one_out" and "k_fold", exactly unbiased, the first but for `controls` and the "auto"
+            ridge; "gradient_descent"; "incremental".
         basis: "legendre", "step", "sine" or "gaussian".
         dims: how many of the coordinates are regressed, the first 1 to 16; None: all.
         slices: above 1, the last of them picks one of so many equally likely alternatives.
         stratified: whether the points are (Sobol's, a lattice's, `Sampler`'s). All but "least_squares" and
             "gradient_descent" are then their plain mean; std_error and gain are those of independent samples.
         channels: whether f's last axis holds the values of a sample.
-        ridge: strength per sample, above 0; None: the default; "auto": the best of a few by leave-one-out errors.
-            "robust" and "gradient_descent" ignore it.
-        folds: of "k_fold", 2 to 16; None: 4.
+        ridge: strength per sample, above 0; None: the default; "auto": the best of a few by leave-one-out errors. Not
+            of "robust" and "gradient_descent".
+        folds: of "k_fold" alone, 2 to 16; None: 4.
         solver: "auto"; "normal_equations"; "square_root", of "least_squares", for badly placed samples; "dual", of at
             most 4,096 samples.
 
@@ -120,6 +122,10 @@ def estimate(
             words = f"control_integrals has the shape {integrals.shape}"
             raise ValueError(f"{words}: (..., {controls.shape[-1]}) is needed")
         arrays |= {"controls": (controls, 2), "control_integrals": (integrals, 1)}
+    takes_ridge = estimator not in ("robust", "gradient_descent")
+    for name, option, takes in (("folds", folds, estimator == "k_fold"), ("ridge", ridge, takes_ridge)):
+        if option is not None and not takes:
+            raise ValueError(f"{name} is {option!r}, and estimator {estimator!r} takes none")
     count = 0 if controls is None else controls.shape[-1]
     config = configure(
         order,
@@ -160,7 +166,7 @@ def estimate(
     for first in range(0, out.size, each):
         some = range(first, min(first + each, out.size))
         # The names keep copies alive during the call.
-        held = {name: _integrals(array, len(leading), some) for name, array in wide.items()}
+        held = {name: integrals_of(array, len(leading), some) for name, array in wide.items()}
         for name, array in held.items():
             setattr(samples, name, _c.data(array))
         status = _c.cv_estimate(
@@ -210,14 +216,14 @@ def image_estimate(
         known_integrals: of `factors`' shape, at least 0: the exact integrals of that.
         order, estimator, basis, dims, slices, channels: as for `estimate`; "robust", "leave_one_out" or "k_fold".
         edges: where two coordinates that pick a point of a light begin, counted from 1; 0: nowhere. With 4 and more
-            samples fits then follow shadows' edges in them. "robust" and "k_fold" use it.
+            samples fits then follow shadows' edges in them. "robust" and "k_fold" use it, without a `ridge`.
         stratified: whether each pixel's points are, `Sampler`'s say.
         ridge: strength per sample, above 0; None: the default. With one, and without `known`, "robust" is exactly
             unbiased, too, and never prefers the mean.
         window: width and height of the windows that share a fit, 1 to 32 pixels; over all frames at most 1,024.
         stride: pixels from one window to the next; None: half of a window.
-        unordered: whether pixels have no places, as points of a cloud: all of one surface share a fit, with `surfaces`
-            at most 1,024 pixels in all. Their order must not follow a picture.
+        unordered: whether pixels have no places, as points of a cloud: all share a fit, whatever window and stride are;
+            with `surfaces`, of at most 1,024 pixels, all of one surface. Their order must not follow a picture.
         threads: how many share the rows of pixels, unless `unordered`; the result has the same bits.
 
     Returns:
@@ -349,7 +355,7 @@ def configure(
     return config
 
 
-def _integrals(array, dims, some):
+def integrals_of(array, dims, some):
     """Those of the integrals, counted over the first `dims` axes, one after the other: copied if they are broadcast."""
     if array.flags.c_contiguous:
         return array.reshape(-1, *array.shape[dims:])[some.start : some.stop]

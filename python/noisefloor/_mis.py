@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 import numpy
 
 from . import _arrays, _c
-from ._estimate import CHUNK
+from ._estimate import CHUNK, COPIED, integrals_of
 
 MISSolver = Literal["ridge", "plain", "balance"]
 
@@ -48,19 +48,21 @@ def optimal_mis(
         technique: integers of shape (..., n), 0 to J - 1: which technique drew the sample. Its density is above 0.
         f: shape (..., n), with `channels` (..., n, c): the integrand there, not divided by any density. Leading
             dimensions of all three broadcast.
-        counts: shape (J,), integers of at least 1: proportions of how often techniques draw, if that was left to
-            chance; None: each drew as many samples as there are of it.
+        counts: shape (J,), integers of at least 1, [3, 1] say for three to one: how often techniques draw, where chance
+            picked; one may then have no sample. None: each drew as many as there are of it, at least 1.
         solver: "ridge", consistent; "plain", the direct estimator, with heavy tails of similar techniques or few
             samples; "balance", the balance heuristic, unbiased.
-        ridge: of "ridge", as many samples that know nothing of f, 1e-8 to 1e8; None: 2.
+        ridge: of "ridge" alone: as many samples that know nothing of f, 1e-8 to 1e8; None: 2.
         channels: whether f's last axis holds the values of a sample.
 
     Returns:
-        An `OptimalMIS` with the leading dimensions. Inputs are rounded to float32, results are.
+        An `OptimalMIS` with the leading dimensions, of float32. Inputs are rounded to that; a warning says where f has
+        too many digits.
     """
     given = {"pdf": _arrays.array("pdf", pdf), "f": _arrays.array("f", f)}
     pdf, f = _arrays.check_positive("pdf", given["pdf"]), _arrays.check_finite("f", given["f"])
     values = 1 if channels else 0
+    _arrays.warn_of_lost_digits("f", given["f"], what="a multiple of a density")
     technique = _arrays.array("technique", technique)
     are_there = pdf.ndim > 1 and technique.ndim > 0 and f.ndim > values
     if not are_there or 0 in pdf.shape[-2:] + f.shape[f.ndim - values :]:
@@ -80,39 +82,47 @@ def optimal_mis(
         _arrays.check_shape("counts", counts, (techniques,), "a number for each of pdf's techniques")
         _arrays.check("counts", counts, counts > 0, "at least 1")
     number = _arrays.one_of("solver", solver, _c.OMIS_SOLVERS)
+    if ridge is not None and solver != "ridge":
+        raise ValueError(f"ridge is {ridge!r}, and solver {solver!r}: only 'ridge' has one")
     ridge = 0 if ridge is None else _arrays.number("ridge", ridge, 1e-8, 1e8)
     try:
         leading = numpy.broadcast_shapes(pdf.shape[:-2], technique.shape[:-1], f.shape[: f.ndim - 1 - values])
     except ValueError:
         shapes = f"pdf {pdf.shape}, technique {technique.shape} and f {f.shape}"
         raise ValueError(f"the leading dimensions of {shapes} do not broadcast") from None
-    pdf, technique, f = (
-        numpy.ascontiguousarray(numpy.broadcast_to(array, leading + array.shape[array.ndim - axes :]))
-        for array, axes in ((pdf, 2), (technique, 1), (f, 1 + values))
-    )
-    density = numpy.take_along_axis(pdf, technique[..., None].astype(numpy.intp), -1)[..., 0]
-    _arrays.check("the density of its own technique, of sample", density, density > 0, "above 0")
+    both = numpy.broadcast_shapes(pdf.shape[:-2], technique.shape[:-1])
+    drawn = numpy.broadcast_to(technique, (*both, n)).astype(numpy.intp)[..., None]
+    density = numpy.take_along_axis(numpy.broadcast_to(pdf, (*both, n, techniques)), drawn, -1)[..., 0]
+    _arrays.check("the density of its own technique, of sample", density, density > 0, "above 0, in float32")
     if counts is None:
         counts = numpy.stack([(technique == j).sum(-1, dtype=numpy.uint32) for j in range(techniques)], -1)
-        _arrays.check("the number of samples of technique", counts, counts > 0, "at least 1, or `counts` given")
-    integrals = own[1] if channels else 1
-    mean = numpy.empty((*leading, integrals), numpy.float32)
-    alpha = numpy.empty((*leading, integrals, techniques), numpy.float32)
+        _arrays.check("the number of samples of technique", counts, counts > 0, "at least 1; or give `counts`")
+    wide = [
+        numpy.broadcast_to(array, leading + array.shape[array.ndim - axes :])
+        for array, axes in ((pdf, 2), (technique, 1), (f, 1 + values), (counts, 1))
+    ]
+    integrals, count = own[1] if channels else 1, math.prod(leading)
+    mean = numpy.empty((count, integrals), numpy.float32)
+    alpha = numpy.empty((count, integrals, techniques), numpy.float32)
     memory = _c.workspace(_c.omis_size(techniques, integrals))
     place, handle = _c.data(memory), ctypes.c_void_p()
-    arrays = pdf, technique, f, mean, alpha, numpy.broadcast_to(counts, (*leading, techniques)).copy()
-    # Of each integral the addresses of its parts of the arrays.
-    count = math.prod(leading)
-    parts = (_c.data(array) + numpy.arange(count) * (array.nbytes // max(1, count)) for array in arrays)
     out = ctypes.addressof(handle)
-    for *inputs, means, alphas, each in zip(*(part.tolist() for part in parts)):
-        status = _c.omis_init(place, memory.nbytes, techniques, integrals, each, out)
-        for first in range(0, n, CHUNK):
-            some = (start + first * 4 * width for start, width in zip(inputs, (techniques, 1, integrals)))
-            status = status or _c.omis_add(handle, *some, min(CHUNK, n - first))
-        status = status or _c.omis_solve(handle, number, ridge, means, alphas)
-        if status:
-            raise ValueError(f"{_c.message(status)}: of {techniques} techniques and {integrals} integrals")
+    each = max(1, min(CHUNK, COPIED // (1 + techniques + integrals)) // n)
+    for begin in range(0, count, each):
+        some = range(begin, min(begin + each, count))
+        # Copies live as long as their name.
+        held = [integrals_of(array, len(leading), some) for array in wide]
+        held += [array[begin : some.stop] for array in (mean, alpha)]
+        parts = zip(*(range(_c.data(array), _c.data(array) + array.nbytes, array[0].nbytes) for array in held))
+        for *inputs, sizes, means, alphas in parts:
+            status = _c.omis_init(place, memory.nbytes, techniques, integrals, sizes, out)
+            for first in range(0, n, CHUNK):
+                rows = (start + first * 4 * width for start, width in zip(inputs, (techniques, 1, integrals)))
+                status = status or _c.omis_add(handle, *rows, min(CHUNK, n - first))
+            status = status or _c.omis_solve(handle, number, ridge, means, alphas)
+            if status:
+                raise ValueError(f"{_c.message(status)}: of {techniques} techniques and {integrals} integrals")
+    mean, alpha = mean.reshape(*leading, integrals), alpha.reshape(*leading, integrals, techniques)
     if not channels:
         mean, alpha = mean[..., 0], alpha[..., 0, :]
     return OptimalMIS(mean if mean.ndim else float(mean), alpha)

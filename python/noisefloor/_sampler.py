@@ -17,7 +17,8 @@ class Sampler:
     light, ...) has a domain of its own, unrelated to others but at numbers 0 and 1.
 
     Args:
-        frame: 0 to 2**32 - 1; frames are unrelated. For frames that are averaged leave it, and let `first` count on.
+        frame: 0 to 2**32 - 1. For a picture that is refined leave it, and let `first` count on; for moving frames that
+            are averaged sample k is number k % 16 of frame k // 16.
         seed: 0 to 2**32 - 1; each but 0 scrambles all numbers, so that estimates are unbiased over seeds. A pixel's
             squared error is up to some three times as large; through a filter more of it is left.
         white: whether neighbouring pixels know nothing of each other, for denoisers that expect that.
@@ -91,8 +92,8 @@ class QMCEngine:
     them. No subclass of theirs: what scipy itself does with engines takes its own only.
 
     Args:
-        d: dims, 1 to 4. Of edges in 2 it is as good as `scipy.stats.qmc.Sobol`, of what is smooth up to some 1,000
-            points; beyond, and in more dims, that is the better engine.
+        d: dims, 1 to 4. In 2 it is as good as `scipy.stats.qmc.Sobol` for edges, and for smooth functions up to some
+            500 points; beyond, and in more dims, scipy's is the better engine.
         seed: 0 to 2**32 - 1. None: another one each time. First points are one of few sequences: of 1,024 pairs, of
             2,048 fours, of some 500,000 of 64 points, so that means of few points are slightly biased over seeds. For
             error bars of repetitions take scipy's `Sobol`.

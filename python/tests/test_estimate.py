@@ -222,9 +222,11 @@ def test_no_integrals_and_very_many():
         ((samples(4, 2), samples(4)), {"solver": "square_root"}, "solver must not be the square root but .* 'robust'"),
         ((samples(4, 2), samples(4)), {"solver": "qr"}, "solver is 'qr': it must be one of 'auto', "),
         ((samples(4097, 2), samples(4097)), {"solver": "dual"}, "solver is 'dual', and u has 4097 samples"),
-        ((samples(4, 2), samples(4)), {"ridge": 0}, "ridge is 0.0: it must be 1e-12 to 3e"),
-        ((samples(4, 2), samples(4)), {"ridge": "best"}, "ridge is 'best': it must be one of 'auto'"),
-        ((samples(4, 2), samples(4)), {"folds": 1}, "folds is 1: it must be 2 to 16"),
+        ((samples(4, 2), samples(4)), {"ridge": 1}, "ridge is 1, and estimator 'robust' takes none"),
+        ((samples(4, 2), samples(4)), {"folds": 4}, "folds is 4, and estimator 'robust' takes none"),
+        ((samples(4, 2), samples(4)), {"ridge": 0, "estimator": "k_fold"}, "ridge is 0.0: it must be 1e-12 to 3e"),
+        ((samples(4, 2), samples(4)), {"ridge": "best", "estimator": "k_fold"}, "ridge is 'best': .* one of 'auto'"),
+        ((samples(4, 2), samples(4)), {"folds": 1, "estimator": "k_fold"}, "folds is 1: it must be 2 to 16"),
         ((samples(4, 2), numpy.ma.array(samples(4), mask=[0, 1, 0, 0])), {}, "f is a masked array"),
     ],
 )
@@ -238,7 +240,7 @@ def test_lost_digits_are_told():
     u = samples(64, 2)
     f = smooth(u)
     for lost in (f + 1e8, -f - 1e8, (1e8 * f).astype(numpy.int64) + 10**14):
-        with pytest.warns(RuntimeWarning, match="subtract a constant, and add it to the mean") as told:
+        with pytest.warns(RuntimeWarning, match="subtract a constant, and add its integral to the mean") as told:
             noisefloor.estimate(u, lost)
         assert told[0].filename == __file__
     with pytest.warns(RuntimeWarning, match="f is 10000000"):

@@ -1,6 +1,7 @@
 """Optimal MIS weights: right against formulas in NumPy, of any shape and type, and refusals that name what is wrong."""
 
 import math
+import tracemalloc
 
 import numpy
 import pytest
@@ -53,7 +54,7 @@ def test_counts_are_proportions_where_chance_picks():
     pdf, f = numpy.stack([numpy.ones_like(x), 2 * x], -1), 3 * x**2 + 1
     found = noisefloor.optimal_mis(pdf, technique, f, counts=[3, 1])
     assert math.isclose(found.mean, 2, rel_tol=0.02)
-    assert found.mean == noisefloor.optimal_mis(pdf, technique, f, counts=[3, 1]).mean
+    assert found.mean == noisefloor.optimal_mis(pdf, technique, f, counts=[6, 2]).mean
 
 
 def test_leading_dimensions_channels_and_chunks(monkeypatch):
@@ -68,8 +69,24 @@ def test_leading_dimensions_channels_and_chunks(monkeypatch):
         numpy.asfortranarray(pdf), technique.astype(numpy.uint8), colour.astype(">f8"), channels=True
     )
     assert all(numpy.array_equal(a, b) for a, b in zip(again, whole))
+    monkeypatch.setattr(noisefloor._mis, "CHUNK", 40)
+    again = noisefloor.optimal_mis(pdf, technique, colour, channels=True)
+    assert all(numpy.array_equal(a, b) for a, b in zip(again, whole))
     one = noisefloor.optimal_mis(pdf[0, 0], technique, f[0, 0])
     assert one.mean == single.mean[0, 0]
+
+
+def test_what_is_shared_is_copied_in_parts():
+    pdf, technique, _ = samples((32, 32))
+    f = numpy.ones((50_000, 64), numpy.float32)
+    tracemalloc.start()
+    found = noisefloor.optimal_mis(pdf, technique, f)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    # Copies of pdf for all of them would have 26 MB.
+    assert peak < 18e6 and numpy.ptp(found.mean) == 0
+    with pytest.warns(RuntimeWarning, match="subtract a multiple of a density, and add its integral to the mean"):
+        noisefloor.optimal_mis(pdf, technique, 1e9 + f[0].astype(float) * technique)
 
 
 @pytest.mark.parametrize(
@@ -87,6 +104,7 @@ def test_leading_dimensions_channels_and_chunks(monkeypatch):
         ({"counts": [1, 0]}, r"counts\[1\] is 0: it must be at least 1"),
         ({"counts": [1, 1, 1]}, r"counts has the shape \(3,\): it must be \(2,\)"),
         ({"solver": "progressive"}, "solver is 'progressive': it must be one of 'ridge', 'plain', 'balance'"),
+        ({"ridge": 1, "solver": "plain"}, "ridge is 1, and solver 'plain': only 'ridge' has one"),
         ({"ridge": 1e9}, "ridge is 1000000000.0: it must be 1e-08 to 100000000.0"),
         ({"channels": True}, r"\(\.\.\., n, c\) are needed"),
         ({"pdf": numpy.ones((2, 4, 2)), "f": numpy.ones((3, 4))}, "do not broadcast"),

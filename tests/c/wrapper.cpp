@@ -388,7 +388,7 @@ static void not_made()
     nf::accumulator made = value_of(nf::accumulator::create(nf::config(2, 2).with(nf::estimator::least_squares), room));
     CHECK(CODE(made.merge(sums)) == state && CODE(sums.merge(made)) == state);
     nf::optimal_mis omis;
-    CHECK(CODE(omis.add(0, out, out)) == state && CODE(omis.add(0, {}, {})) == state);
+    CHECK(CODE(omis.add(out, 0, out)) == state && CODE(omis.add({}, 0, {})) == state);
     CHECK(CODE(omis.solve(out)) == state && CODE(omis.solve({})) == state && CODE(omis.alpha(out)) == state);
     CHECK(CODE(omis.next_batch()) == state && CODE(omis.merge(omis)) == state);
     const std::uint32_t counts[2] = {1, 1};
@@ -474,14 +474,14 @@ static void mis()
     std::array<float, 1> estimate{};
     std::array<float, 2> found{};
     CHECK(CODE(omis.solve(estimate)) == nf::status::no_samples);
-    SUCCEED(omis.add(0, pdf, value));
-    SUCCEED(omis.add(1, pdf, value));
+    SUCCEED(omis.add(pdf, 0, value));
+    SUCCEED(omis.add(pdf, 1, value));
     SUCCEED(omis.next_batch());
     SUCCEED(omis.solve(estimate, nf::optimal_mis::solver::balance));
     CHECK(estimate[0] == 1.0f);
     SUCCEED(omis.alpha(found));
     SUCCEED(omis.next_batch(nf::optimal_mis::solver::balance, 0.0f, 0.5f));
-    CHECK(CODE(omis.add(0, {pdf, 1}, value)) == nf::status::length);
+    CHECK(CODE(omis.add({pdf, 1}, 0, value)) == nf::status::length);
     {
         // Many at once have the bits of one after the other.
         const float densities[6] = {1.0f, 0.5f, 1.0f, 1.5f, 1.0f, 0.0f}, values[3] = {3.0f, 4.0f, 5.0f};
@@ -490,7 +490,7 @@ static void mis()
         nf::optimal_mis one = value_of(nf::optimal_mis::create(counts, 1, apart));
         nf::optimal_mis all = value_of(nf::optimal_mis::create(counts, 1, together));
         for (std::size_t i = 0; i < 3; ++i)
-            SUCCEED(one.add(drawn[i], {densities + 2 * i, 2}, {values + i, 1}));
+            SUCCEED(one.add({densities + 2 * i, 2}, drawn[i], {values + i, 1}));
         SUCCEED(all.add(densities, drawn, values));
         CHECK(apart == together);
         SUCCEED(all.add({densities, 0}, {drawn, 0}, {values, 0}));

@@ -146,11 +146,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         Ok(())
     }
 
-    /// Whether [`OptimalMis::add`] would take a sample, so that of many either all are added or none.
-    ///
-    /// # Errors
-    /// Those of [`OptimalMis::add`].
-    pub fn check(&self, technique: usize, pdf: &[f32], value: &[f32]) -> Result<(), Error> {
+    fn check(&self, technique: usize, pdf: &[f32], value: &[f32]) -> Result<(), Error> {
         ensure(pdf.len() == self.techniques && value.len() == self.integrals, Error::Length)?;
         let own = *pdf.get(technique).ok_or(Error::Range)?;
         ensure(pdf.iter().chain(value).all(|x| x.is_finite()), Error::NotFinite)?;
@@ -203,6 +199,24 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// infinity among the densities (combine delta distributions outside) or values.
     pub fn add(&mut self, technique: usize, pdf: &[f32], value: &[f32]) -> Result<(), Error> {
         self.check(technique, pdf, value)?;
+        self.add_checked(pdf, value)
+    }
+
+    /// Adds n samples, all or none: `pdf[n * J]`, `technique[n]` and `value[n * P]` are those of one after the other.
+    ///
+    /// # Errors
+    /// As for [`OptimalMis::add`].
+    pub fn add_samples(&mut self, pdf: &[f32], technique: &[u32], value: &[f32]) -> Result<(), Error> {
+        let (n, techniques, integrals) = (technique.len(), self.techniques, self.integrals);
+        let are_rows = n.checked_mul(techniques) == Some(pdf.len()) && n.checked_mul(integrals) == Some(value.len());
+        ensure(are_rows, Error::Length)?;
+        let samples = || rows(pdf, techniques).zip(rows(value, integrals));
+        let mut drawn = technique.iter().zip(samples());
+        drawn.try_for_each(|(&technique, (pdf, value))| self.check(technique as usize, pdf, value))?;
+        samples().try_for_each(|(pdf, value)| self.add_checked(pdf, value))
+    }
+
+    fn add_checked(&mut self, pdf: &[f32], value: &[f32]) -> Result<(), Error> {
         let techniques = self.techniques;
         let sum: f64 = pdf.iter().zip(&self.counts).map(|(&p, &n)| f64::from(p) * f64::from(n)).sum();
         let mut ratio = Vector::default();

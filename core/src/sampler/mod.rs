@@ -66,8 +66,8 @@ impl Sampler {
     ///
     /// The samples of a pixel are one sequence, best at powers of two; take any number, and stop where you like. Each
     /// frame is the table at another place, and otherwise unrelated to the others. Where frames are averaged, count the
-    /// index on: by a viewer in frame 0, by TAA up to 16 samples in each frame, of n samples frame k / 16 and indices
-    /// from k % 16 on, k being n times the number of frames so far.
+    /// index on, by a viewer in frame 0, by TAA 16 samples per frame number: of the k-th sample so far frame k / 16 and
+    /// index k % 16.
     #[inline]
     pub const fn pixel(x: u32, y: u32, frame: u32, index: u32) -> Sampler {
         let domain = if frame == 0 { 0 } else { child(FRAMES, frame) };

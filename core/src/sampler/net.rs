@@ -52,8 +52,8 @@ const fn place(domain: u32, x: u32, y: u32) -> (u32, u32) {
 ///
 /// Pixels of a block, 8 x 8 of them, share it, so that sample i of neighbours is as even as sample i of the table: what
 /// is shown after a number of samples that is no power of two, or averaged with what came before, has less error once
-/// it is filtered. Larger blocks gain little more, and products of two domains' numbers show them: these have more
-/// error in some than in others.
+/// it is filtered. The price: of products of two domains' numbers some blocks have more error than others. Larger ones
+/// gain little more, and show.
 ///
 /// Each digit is exclusive-or a function of the digits after it, as both steps take bits upwards only.
 #[inline]
