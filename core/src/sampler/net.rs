@@ -14,15 +14,16 @@ use crate::matrix::chunk;
 #[inline(always)]
 pub(super) fn point<const N: usize>(sampler: &Sampler) -> [u32; N] {
     let Sampler { domain, index, x, y, flags } = *sampler;
-    let (mut x, mut y) = (u32::from(x), u32::from(y));
+    // The row above the column, and then each alone: of these only the lowest bits count.
+    let mut at = u32::from(x) | u32::from(y) << 16;
     let mut first = index.reverse_bits();
     if flags & WHITE != 0 {
         // Of two small numbers `mix` alone makes places that near pixels share too often.
-        let at = mix((x | y << 16).wrapping_mul(GOLDEN));
-        (x, y) = (at & 0xffff, at >> 16);
+        at = mix(at.wrapping_mul(GOLDEN));
     }
+    let (mut x, mut y) = (at, at >> 16);
     if domain != 0 {
-        first = reorder(first, domain, x, y);
+        first = reorder(first, domain, at);
         (x, y) = place(domain, x, y);
     }
     let [a, b] = pair(x, y, first);
@@ -57,9 +58,9 @@ const fn place(domain: u32, x: u32, y: u32) -> (u32, u32) {
 ///
 /// Each digit is exclusive-or a function of the digits after it, as both steps take bits upwards only.
 #[inline]
-const fn reorder(first: u32, domain: u32, x: u32, y: u32) -> u32 {
+const fn reorder(first: u32, domain: u32, at: u32) -> u32 {
     // Where blocks begin is the domain's, too.
-    let block = (x | y << 16).wrapping_add(domain) & 0xfff8_fff8;
+    let block = at.wrapping_add(domain) & 0xfff8_fff8;
     let mut random = domain.wrapping_add(block.wrapping_mul(0x2c1b_3c6d));
     random = (random ^ random >> 15).wrapping_mul(0x735a_2d97);
     random ^= random >> 15;
