@@ -219,7 +219,7 @@ def image_estimate(
             samples fits then follow shadows' edges in them. "robust" and "k_fold" use it, without a `ridge`.
         stratified: whether each pixel's points are, `Sampler`'s say.
         ridge: strength per sample, above 0; None: the default. With one, and without `known`, "robust" is exactly
-            unbiased, too, and never prefers the mean.
+            unbiased, too, and fits even where the mean is better.
         window: width and height of the windows that share a fit, 1 to 32 pixels; over all frames at most 1,024.
         stride: pixels from one window to the next; None: half of a window.
         unordered: whether pixels have no places, as points of a cloud: all share a fit, whatever window and stride are;

@@ -54,7 +54,8 @@ class Table:
     millionfold, which take O(n). 4.6 bytes for each item that there is room for.
 
     Any number of threads may use one table, and a signal's handler may call `state_dict` alone. Tables can be pickled
-    and copied. A copy draws the same minibatches, as that in a forked process does: see `reseed`.
+    and copied. A copy draws the same minibatches, as that in a forked process does: see `reseed`. A handler that raises
+    while the process forks leaves its child with locks that nobody gives back, as Python ignores what is raised there.
 
     Args:
         n: how many items, 1 to 2**32 - 1.

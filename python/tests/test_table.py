@@ -186,10 +186,10 @@ def make():
         tables[1:] = [noisefloor.Table(10) for _ in range(20)]
 
 def interrupt(*_):
-    if os.fork() == 0:
+    own = os.fork()
+    if own == 0:
         os._exit(0)
-    os.wait()
-    raise KeyboardInterrupt
+    os.waitpid(own, 0)
 
 def child():
     signal.alarm(20)
@@ -205,15 +205,15 @@ for worker in workers:
     worker.start()
 signal.signal(signal.SIGUSR1, interrupt)
 for turn in range(30):
-    try:
-        if turn % 3 == 0:
-            threading.Timer(0.002, lambda: os.kill(os.getpid(), signal.SIGUSR1)).start()
-        pid = os.fork()
-        if pid == 0:
-            child()
-        assert os.waitpid(pid, 0)[1] == 0, turn
-    except KeyboardInterrupt:
-        pass
+    timer = threading.Timer(0.002, lambda: os.kill(os.getpid(), signal.SIGUSR1))
+    if turn % 3 == 0:
+        timer.start()
+    pid = os.fork()
+    if pid == 0:
+        child()
+    assert os.waitpid(pid, 0)[1] == 0, turn
+    if turn % 3 == 0:
+        timer.join()
 ends.set()
 for worker in workers:
     worker.join()
