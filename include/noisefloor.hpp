@@ -457,6 +457,11 @@ struct samples {
 };
 
 namespace detail {
+// Whether so many numbers are n rows; products could overflow.
+inline bool is_rows(std::size_t size, std::size_t n, std::size_t width) noexcept
+{
+    return n == 0 ? size == 0 : size % n == 0 && size / n == width;
+}
 // How many samples the arrays hold, or why they hold none.
 inline nf_status count(const nf_cv_config &how, const samples &what, std::size_t &n) noexcept
 {
@@ -471,7 +476,7 @@ inline nf_status count(const nf_cv_config &how, const samples &what, std::size_t
         (what.u.size() - 1) / stride > n - 1)
         return lengths(how);
     const std::size_t used = how.controls;
-    if (what.control_integrals.size() != used || what.controls.size() % n != 0 || what.controls.size() / n != used)
+    if (what.control_integrals.size() != used || !is_rows(what.controls.size(), n, used))
         return lengths(how);
     return NF_OK;
 }
@@ -542,8 +547,7 @@ inline returned<void> estimate_image(const nf_cv_config &how, const image &where
     const bool knows = !what.known.empty() || !what.known_integrals.empty();
     if (code == NF_OK && !(divides && where.fits(how) &&
                            (!knows || (what.known.size() == what.f.size() &&
-                                       what.known_integrals.size() % pixels == 0 &&
-                                       what.known_integrals.size() / pixels == how.channels))))
+                                       detail::is_rows(what.known_integrals.size(), pixels, how.channels)))))
         code = detail::lengths(how, where);
     if (code == NF_OK) {
         const nf_cv_samples all = detail::view(what, n / pixels);
@@ -687,14 +691,6 @@ inline returned<float> optimal_contribution(const point &at, std::uint32_t techn
 
 } // namespace mis
 
-namespace detail {
-// Whether so many numbers are n rows; products could overflow.
-inline bool is_rows(std::size_t size, std::size_t n, std::size_t width) noexcept
-{
-    return n == 0 ? size == 0 : size % n == 0 && size / n == width;
-}
-} // namespace detail
-
 // A view of an nf_omis in caller memory: copying the view does not copy the sums.
 class optimal_mis {
 public:
@@ -755,7 +751,7 @@ public:
     // out[integrals * techniques], an integral after the other
     returned<void> alpha(span<float> out, solver how = solver::ridge, float ridge = 0.0f) const
     {
-        const bool fits = techniques_ > 0 && out.size() % techniques_ == 0 && out.size() / techniques_ == integrals_;
+        const bool fits = detail::is_rows(out.size(), techniques_, integrals_);
         return finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, nullptr, out.data())
                            : NF_ERR_LENGTH,
                       how, ridge);

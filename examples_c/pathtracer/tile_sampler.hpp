@@ -148,11 +148,12 @@ inline uint32_t frame_of(const SamplerSetup &setup, uint32_t tile_frames)
 class DefaultSampler final : public Sampler {
 public:
     explicit DefaultSampler(const SamplerSetup &setup)
-        : setup_(setup), together_(16 % setup.samples == 0 ? 16 / setup.samples : 1),
-          frame_(frame_of(setup, 1) - setup.frame + setup.frame / together_),
-          first_(setup.frame % together_ * setup.samples),
+        : setup_(setup), frame_(frame_of(setup, 1)),
           scramble_(setup.scramble ? static_cast<uint32_t>(mix(setup.seed)) | 1 : 0), groups_(group(setup.domains, 4))
     {
+        const uint32_t together = 16 % setup.samples == 0 ? 16 / setup.samples : 1;
+        first_ = setup.frame % together * setup.samples;
+        frame_ -= setup.frame - setup.frame / together;
     }
 
     void points(uint32_t x, uint32_t y, float *u) const override { range(x, y, 0, setup_.samples, u); }
@@ -164,7 +165,7 @@ public:
 
 private:
     SamplerSetup setup_;
-    uint32_t together_, frame_, first_, scramble_;
+    uint32_t frame_, first_, scramble_;
     std::vector<Group> groups_;
 };
 

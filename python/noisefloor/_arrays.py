@@ -135,6 +135,28 @@ def parts(state, *names):
         raise ValueError(f"the state has no {error}: it must be state_dict()'s, of this version") from None
 
 
+def broadcast(arrays):
+    """The leading dimensions of arrays, named, each with how many axes are its own; and the arrays with these."""
+    leadings = {name: array.shape[: array.ndim - axes] for name, (array, axes) in arrays.items()}
+    try:
+        leading = numpy.broadcast_shapes(*leadings.values())
+    except ValueError:
+        words = ", ".join(f"{name} {array.shape}" for name, (array, _) in arrays.items())
+        raise ValueError(f"the leading dimensions of {words} do not broadcast") from None
+    return leading, {
+        name: numpy.broadcast_to(array, leading + array.shape[len(leadings[name]) :])
+        for name, (array, _) in arrays.items()
+    }
+
+
+def some_of(array, dims, some):
+    """Those of a range, counted over the first `dims` axes, one after the other: copied if they are broadcast."""
+    if array.flags.c_contiguous:
+        return array.reshape(-1, *array.shape[dims:])[some.start : some.stop]
+    places = numpy.unravel_index(numpy.arange(some.start, some.stop), array.shape[:dims])
+    return numpy.ascontiguousarray(array[places])
+
+
 def check(name, values, good, allowed):
     """Refuses the first element that is not good."""
     if not numpy.all(good):

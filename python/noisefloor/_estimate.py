@@ -143,17 +143,8 @@ def estimate(
     )
     if config.solver == _c.SOLVERS["dual"] and n > _c.MAX_DUAL:
         raise ValueError(f"solver is 'dual', and u has {n} samples: it takes at most {_c.MAX_DUAL}")
-    leadings = {name: array.shape[: array.ndim - axes] for name, (array, axes) in arrays.items()}
-    try:
-        leading = numpy.broadcast_shapes(*leadings.values())
-    except ValueError:
-        words = ", ".join(f"{name} {array.shape}" for name, (array, _) in arrays.items())
-        raise ValueError(f"the leading dimensions of {words} do not broadcast") from None
+    leading, wide = _arrays.broadcast(arrays)
     _arrays.warn_of_lost_digits("f", given[1], -1 - values)
-    wide = {
-        name: numpy.broadcast_to(array, leading + array.shape[len(leadings[name]) :])
-        for name, (array, _) in arrays.items()
-    }
     out = numpy.empty(leading, _c.ESTIMATE)
     workspace = _c.workspace(_c.cv_workspace_size(_c.address(config), n))
     samples = _c.Samples(n=n)
@@ -166,7 +157,7 @@ def estimate(
     for first in range(0, out.size, each):
         some = range(first, min(first + each, out.size))
         # The names keep copies alive during the call.
-        held = {name: integrals_of(array, len(leading), some) for name, array in wide.items()}
+        held = {name: _arrays.some_of(array, len(leading), some) for name, array in wide.items()}
         for name, array in held.items():
             setattr(samples, name, _c.data(array))
         status = _c.cv_estimate(
@@ -353,13 +344,6 @@ def configure(
             config.order -= 1
         raise ValueError(f"{words}; {'fewer dims or slices fit' if _c.wrong(config) else f'order {config.order} fits'}")
     return config
-
-
-def integrals_of(array, dims, some):
-    """Those of the integrals, counted over the first `dims` axes, one after the other: copied if they are broadcast."""
-    if array.flags.c_contiguous:
-        return array.reshape(-1, *array.shape[dims:])[some.start : some.stop]
-    return numpy.ascontiguousarray(array[numpy.unravel_index(numpy.arange(some.start, some.stop), array.shape[:dims])])
 
 
 def _refuse(status, u, f, config):

@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 import numpy
 
 from . import _arrays, _c
-from ._estimate import CHUNK, COPIED, integrals_of
+from ._estimate import CHUNK, COPIED
 
 MISSolver = Literal["ridge", "plain", "balance"]
 
@@ -85,22 +85,15 @@ def optimal_mis(
     if ridge is not None and solver != "ridge":
         raise ValueError(f"ridge is {ridge!r}, and solver {solver!r}: only 'ridge' has one")
     ridge = 0 if ridge is None else _arrays.number("ridge", ridge, 1e-8, 1e8)
-    try:
-        leading = numpy.broadcast_shapes(pdf.shape[:-2], technique.shape[:-1], f.shape[: f.ndim - 1 - values])
-    except ValueError:
-        shapes = f"pdf {pdf.shape}, technique {technique.shape} and f {f.shape}"
-        raise ValueError(f"the leading dimensions of {shapes} do not broadcast") from None
-    both = numpy.broadcast_shapes(pdf.shape[:-2], technique.shape[:-1])
-    drawn = numpy.broadcast_to(technique, (*both, n)).astype(numpy.intp)[..., None]
-    density = numpy.take_along_axis(numpy.broadcast_to(pdf, (*both, n, techniques)), drawn, -1)[..., 0]
+    _, pairs = _arrays.broadcast({"pdf": (pdf, 2), "technique": (technique, 1)})
+    drawn = pairs["technique"].astype(numpy.intp)[..., None]
+    density = numpy.take_along_axis(pairs["pdf"], drawn, -1)[..., 0]
     _arrays.check("the density of its own technique, of sample", density, density > 0, "above 0, in float32")
     if counts is None:
         counts = numpy.stack([(technique == j).sum(-1, dtype=numpy.uint32) for j in range(techniques)], -1)
         _arrays.check("the number of samples of technique", counts, counts > 0, "at least 1; or give `counts`")
-    wide = [
-        numpy.broadcast_to(array, leading + array.shape[array.ndim - axes :])
-        for array, axes in ((pdf, 2), (technique, 1), (f, 1 + values), (counts, 1))
-    ]
+    arrays = {"pdf": (pdf, 2), "technique": (technique, 1), "f": (f, 1 + values), "counts": (counts, 1)}
+    leading, wide = _arrays.broadcast(arrays)
     integrals, count = own[1] if channels else 1, math.prod(leading)
     mean = numpy.empty((count, integrals), numpy.float32)
     alpha = numpy.empty((count, integrals, techniques), numpy.float32)
@@ -111,7 +104,7 @@ def optimal_mis(
     for begin in range(0, count, each):
         some = range(begin, min(begin + each, count))
         # Copies live as long as their name.
-        held = [integrals_of(array, len(leading), some) for array in wide]
+        held = [_arrays.some_of(array, len(leading), some) for array in wide.values()]
         held += [array[begin : some.stop] for array in (mean, alpha)]
         parts = zip(*(range(_c.data(array), _c.data(array) + array.nbytes, array[0].nbytes) for array in held))
         for *inputs, sizes, means, alphas in parts:
