@@ -27,8 +27,16 @@ def array(name, value):
             return numpy.from_dlpack(value)
         return numpy.asarray(value)
     except (BufferError, RuntimeError, TypeError, ValueError) as error:
+        _refuse_traced(name, value)
         kind = ValueError if isinstance(error, ValueError) else TypeError
         raise kind(f"{name} is no array of numbers: {error}") from None
+
+
+def _refuse_traced(name, value):
+    """Says of JAX's stand-ins for arrays what to do."""
+    if isinstance(value, getattr(sys.modules.get("jax.core"), "Tracer", ())):
+        words = "call this outside of jit, grad and vmap, or within jax.experimental.io_callback"
+        raise TypeError(f"{name} is traced by JAX and has no numbers yet: {words}") from None
 
 
 def floats(name, value, kind=numpy.float32):
@@ -37,7 +45,7 @@ def floats(name, value, kind=numpy.float32):
     view = array(name, value)
     # JAX's bfloat16 is none of NumPy's kinds.
     if view.dtype.kind not in "fiub" and view.dtype.name != "bfloat16":
-        raise TypeError(f"{name} holds {view.dtype}: real numbers are expected")
+        raise TypeError(f"{name} holds {view.dtype}: real numbers are expected, of NumPy's kinds or bfloat16")
     with numpy.errstate(over="ignore"):
         return plain(view, kind)
 
@@ -98,6 +106,7 @@ def integer(name, value, least, most):
     try:
         number = value.__index__()
     except (AttributeError, TypeError):
+        _refuse_traced(name, value)
         raise TypeError(f"{name} is {value!r}: an integer is expected") from None
     if not least <= number <= most:
         raise ValueError(f"{name} is {number}: it must be {least} to {most}")
@@ -109,6 +118,7 @@ def number(name, value, least, most):
     try:
         result = value.__float__()
     except (AttributeError, TypeError, ValueError):
+        _refuse_traced(name, value)
         raise TypeError(f"{name} is {value!r}: a number is expected") from None
     except OverflowError:
         raise ValueError(f"{name} is an integer beyond a float's range: it must be {least} to {most}") from None

@@ -167,7 +167,7 @@ class Table:
                 status = draw(self._at, self._rng_at, batch, self._index_at, self._value_at)
                 if not status:
                     return self._index[:batch].astype(numpy.int64), self._value[:batch].copy()
-        raise self._draw_error(status, batch, method)
+        raise self._draw_error(batch, method)
 
     def _draw_many(self, shape, method):
         """Minibatches, in arrays of this shape."""
@@ -177,7 +177,7 @@ class Table:
         if not shape or math.prod(shape) > most:
             raise ValueError(f"batch is {shape}: it must be one number or several, of a product up to {most}")
         if method == "distinct" and shape[-1] > self._n:
-            raise self._draw_error(0, shape[-1], method)
+            raise self._draw_error(shape[-1], method)
         if method == "iid":
             # Independent of each other they may be drawn as one.
             index, weight = self.draw(math.prod(shape))
@@ -187,13 +187,15 @@ class Table:
             index[at], weight[at] = self.draw(shape[-1], method)
         return index, weight
 
-    def _draw_error(self, status, batch, method):
+    def _draw_error(self, batch, method):
         if method == "distinct" and batch > self._n:
             return ValueError(f"batch is {batch}: a distinct draw takes 0 to {self._n}, as many as there are items")
-        return ValueError(
-            f"{_c.message(status)}: too few items have an importance above 0, and uniform_fraction is "
-            f"{self.uniform_fraction:.6g}"
-        )
+        items = int(numpy.count_nonzero(self.importances()))
+        if not items:
+            words = "no item has an importance above 0"
+        else:
+            words = f"batch is {batch}: a distinct draw takes 0 to {items}, as many items have an importance above 0"
+        return ValueError(f"{words}, and uniform_fraction is {self.uniform_fraction:.6g}")
 
     def update(self, index: Any, importance: Any, momentum: float = 0.3) -> None:
         """Sets the importance of items: q = momentum q + (1 - momentum) importance.
@@ -313,7 +315,7 @@ class Table:
             p = numpy.empty(index.shape, numpy.float32)
             status = _c.table_probabilities(self._at, _c.data(index), index.size, 1, _c.data(p))
         if status:
-            raise self._draw_error(status, 0, None)
+            raise self._draw_error(0, None)
         return p
 
     def state_dict(self) -> dict[str, Any]:
@@ -344,7 +346,7 @@ class Table:
         if n is not None and items not in (0, n):
             raise ValueError(f"the state has {items} items, this table {n}")
         try:
-            first, second = rng
+            first, second = () if isinstance(rng, Mapping) else rng
         except (TypeError, ValueError):
             raise ValueError(f"rng is {rng!r}: it must be two integers") from None
         rng = [_arrays.integer("rng", number, 0, 2**64 - 1) for number in (first, second)]

@@ -35,6 +35,13 @@ found = noisefloor.estimate(u, f)
 expected = noisefloor.estimate(numpy.asarray(u), numpy.asarray(f))
 assert all(numpy.array_equal(a, b) for a, b in zip(found, expected))
 assert noisefloor.estimate(u, f.astype(jnp.bfloat16)).mean.shape == (5,)
+for call in (lambda x: plain.update(index, x), lambda x: plain.draw(x), lambda x: plain.update(0, 1, momentum=x)):
+    try:
+        jax.jit(call)(3)
+    except TypeError as error:
+        assert "is traced by JAX" in str(error), error
+    else:
+        raise AssertionError("a traced number was taken")
 print("all of it")
 """
 

@@ -336,6 +336,7 @@ def damaged(state):
         (lambda t: t.load_state_dict(None), "the state is a NoneType: what state_dict"),
         (lambda t: t.load_state_dict({**t.state_dict(), "rng": (1,)}), r"rng is \(1,\): it must be two integers"),
         (lambda t: t.load_state_dict({**t.state_dict(), "rng": 5}), "rng is 5: it must be two integers"),
+        (lambda t: t.load_state_dict({**t.state_dict(), "rng": {0: 1, 1: 2}}), "rng is .*: it must be two integers"),
         (
             lambda t: t.load_state_dict({**t.state_dict(), "table": t.state_dict()["table"].astype(numpy.int16)}),
             "table holds int16: uint8 is expected",
@@ -362,6 +363,15 @@ def test_without_importance_nothing_can_be_drawn():
     for call in (lambda: table.draw(1), table.probabilities):
         with pytest.raises(ValueError, match="uniform_fraction is 0"):
             call()
+
+
+def test_a_distinct_draw_says_how_many_it_takes():
+    table = noisefloor.Table(4, importance=[0.0, 1.0, 0.0, 2.0], uniform_fraction=0)
+    assert sorted(table.draw(2, "distinct")[0]) == [1, 3]
+    said = "^batch is 3: a distinct draw takes 0 to 2, .*, and uniform_fraction is 0$"
+    for batch in (3, (1, 3)):
+        with pytest.raises(ValueError, match=said):
+            table.draw(batch, "distinct")
 
 
 def test_copies_draw_the_same():
