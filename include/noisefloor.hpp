@@ -66,6 +66,11 @@ private:
 };
 
 namespace detail {
+// Whether so many numbers are n rows; products could overflow.
+inline bool is_rows(std::size_t size, std::size_t n, std::size_t width) noexcept
+{
+    return n == 0 ? size == 0 : size % n == 0 && size / n == width;
+}
 // If a C is a container that ends with the expression, and no view: what keeps a pointer to its elements refuses it.
 // Arrays of constants pass: they look like views.
 template <class C>
@@ -418,11 +423,8 @@ public:
     // Whether the arrays are as long as they must be.
     bool fits(const nf_cv_config &how) const noexcept
     {
-        const std::size_t channels = how.channels;
-        const auto each = [&](std::size_t size) {
-            return channels != 0 && size % channels == 0 && size / channels == pixels();
-        };
-        return (!has_surfaces_ || surfaces_ == pixels()) && (!has_factors_ || each(factors_));
+        const bool factors_fit = how.channels != 0 && detail::is_rows(factors_, how.channels, pixels());
+        return (!has_surfaces_ || surfaces_ == pixels()) && (!has_factors_ || factors_fit);
     }
 
 private:
@@ -457,11 +459,6 @@ struct samples {
 };
 
 namespace detail {
-// Whether so many numbers are n rows; products could overflow.
-inline bool is_rows(std::size_t size, std::size_t n, std::size_t width) noexcept
-{
-    return n == 0 ? size == 0 : size % n == 0 && size / n == width;
-}
 // How many samples the arrays hold, or why they hold none.
 inline nf_status count(const nf_cv_config &how, const samples &what, std::size_t &n) noexcept
 {

@@ -190,10 +190,8 @@ class Table:
     def _draw_error(self, batch, method):
         if method == "distinct" and batch > self._n:
             return ValueError(f"batch is {batch}: a distinct draw takes 0 to {self._n}, as many as there are items")
-        items = int(numpy.count_nonzero(self.importances()))
-        if not items:
-            words = "no item has an importance above 0"
-        else:
+        words = "no item has an importance above 0"
+        if method == "distinct" and (items := int(numpy.count_nonzero(self.importances()))):
             words = f"batch is {batch}: a distinct draw takes 0 to {items}, as many items have an importance above 0"
         return ValueError(f"{words}, and uniform_fraction is {self.uniform_fraction:.6g}")
 
