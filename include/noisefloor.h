@@ -57,7 +57,7 @@ NF_ASSERT_LAYOUT(sizeof(nf_status) == 4 && sizeof(nf_cv_descent) == 16 && sizeof
 NF_ASSERT_STRUCT(nf_cv_config, 64, ridge, 60, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_cv_samples) == 6 * sizeof(void *) + sizeof(size_t));
 NF_ASSERT_STRUCT(nf_estimate, 40, samples, 32, float);
-NF_ASSERT_LAYOUT(sizeof(nf_cv_image) == 24 + 2 * sizeof(void *) + 32 && offsetof(nf_cv_image, surfaces) == 24);
+NF_ASSERT_LAYOUT(sizeof(nf_cv_image) == 24 + 3 * sizeof(void *) + 32 && offsetof(nf_cv_image, samples) == 24);
 NF_ASSERT_STRUCT(nf_cv_rectangle, 16, width, 8, uint32_t);
 NF_ASSERT_STRUCT(nf_recommendation, 96, config, 32, uint32_t);
 NF_ASSERT_STRUCT(nf_omis_arguments, 2 * sizeof(void *) + 16, beta, sizeof(void *) + 16, void *);

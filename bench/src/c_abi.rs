@@ -60,6 +60,7 @@ struct Image {
     window: u32,
     stride: u32,
     unordered: u32,
+    samples: usize,
     surfaces: *const u32,
     factors: *const f32,
     /// Column, row, width and height of what is given, then of what is wanted.
@@ -173,6 +174,7 @@ impl Shared {
             window: 8,
             stride: stride as u32,
             unordered: u32::from(stride == 0),
+            samples: 0,
             surfaces: std::ptr::null(),
             factors: std::ptr::null(),
             parts: [[0; 4]; 2],

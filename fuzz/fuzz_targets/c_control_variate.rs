@@ -177,6 +177,7 @@ fn shared(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
         window: source.small(5)?,
         stride: source.small(5)?,
         unordered: u32::from(source.rarely(4)?),
+        samples: if source.rarely(3)? { source.small(4)? as usize } else { 0 },
         surfaces: null(),
         factors: null(),
         given: nf_cv_rectangle::default(),

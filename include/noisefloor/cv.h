@@ -93,13 +93,11 @@ typedef struct nf_cv_samples {
     size_t n; // Samples of each integral; below 2^32, of an image in all. Of several, arrays hold one after the other.
     const float *controls; // n rows of `controls` floats: functions of known integral at the samples (4.18).
     const float *control_integrals; // The integrals of the `controls` functions, finite.
-    // For nf_cv_image_estimate(), n rows of `channels` finite floats: what f would be with nothing in the way, the
-    // unshadowed light. Pixels are then also corrected by how far its mean is from `known_integrals`, as far as their
-    // neighbours follow it.
+    // For nf_cv_image_estimate(), n rows of `channels` finite floats: f with nothing in the way, the unshadowed light.
+    // Pixels are then also corrected by how far its mean is from `known_integrals`, as far as neighbours follow it.
     const float *known;
-    // With `known`: `channels` floats for each pixel, its exact integrals over u, those of a polygon light in closed
-    // form say. Finite, at least 0; a pixel with 0 is not corrected by it. Where the samples of a pixel see several
-    // points, the mean of theirs.
+    // With `known`: `channels` floats for each pixel, its exact integrals over u, those of a polygon, say. Finite, at
+    // least 0; a pixel with 0 is not corrected by it. Where a pixel's samples see several points, the mean of theirs.
     const float *known_integrals;
 } nf_cv_samples;
 
@@ -151,6 +149,8 @@ typedef struct nf_cv_image {
     // 1 if the pixels have no places: all of one surface, in all frames, share a fit. With `surfaces` at most 1024
     // pixels. Their order must not follow a picture: shuffle them, above all for NF_CV_K_FOLD.
     uint32_t unordered;
+    // How many of a pixel's `n` samples count, its first; 0 means all. No others are read: still to be traced, say.
+    size_t samples;
     // A number for each pixel, or NULL: only pixels of the same number share a fit, those that show one material under
     // a similar normal, say. It must not depend on the pixel's own samples, or no estimator is unbiased.
     const uint32_t *surfaces;
@@ -257,7 +257,7 @@ nf_status nf_cv_accumulator_estimate(const nf_cv_accumulator *accumulator, void 
 // What nf_recommend() says.
 typedef struct nf_recommendation {
     uint32_t method; // How to make estimates of the samples: NF_METHOD_*
-    // `stride` of nf_cv_image for NF_METHOD_SHARED, in windows of 8. With surfaces leave it 0: windows overlap.
+    // `stride` of nf_cv_image for NF_METHOD_SHARED, in windows of 8. 0: overlapping ones, less error, more time.
     uint32_t image_stride;
     // Which tile of the library to draw from, if there is a choice: its samples per pixel. One of 1 sample is
     // continued as a Sobol sequence.

@@ -61,6 +61,7 @@ class Image(ctypes.Structure):
     C_NAME = "nf_cv_image"
     _fields_ = (
         _fields(u32, "width height frames window stride unordered")
+        + [("samples", ctypes.c_size_t)]
         + _fields(pointer, "surfaces factors")
         + _fields(Rectangle, "given wanted")
     )

@@ -50,6 +50,7 @@ static void defaults(void)
     image.frames = 1;
     image.window = 8;
     image.stride = 4;
+    image.samples = N;
     config.ridge = NF_RIDGE_AUTO;
     estimate(&config, &image, N, out);
     CHECK(memcmp(out, expected, sizeof out) == 0);
@@ -372,6 +373,11 @@ static void errors(void)
         REFUSED(NF_ERR_UNSUPPORTED);
     }
     image.unordered = 0;
+    config = make_config(2, 2, 1, NF_CV_ROBUST);
+    image.samples = N + 1; /* more than there are */
+    REFUSED(NF_ERR_RANGE);
+    CHECK(image_workspace_size(&config, &image, N) == 0);
+    image.samples = 0;
     config = make_config(0, 2, 1, NF_CV_ROBUST);
     REFUSED(NF_ERR_RANGE);
     config = make_config(1, 2, 1, NF_CV_ROBUST);

@@ -40,7 +40,7 @@ fn trivial_knowledge_changes_nothing() {
                 for same in [
                     plain,
                     Image { window: 8, ..plain },
-                    Image { stride: 4, ..plain },
+                    Image { stride: 4, samples: n, ..plain },
                     Image { surfaces: &surfaces, ..plain },
                     Image { factors: &ones, ..plain },
                     Image { factors: &zeros, surfaces: &surfaces, ..plain },
@@ -130,6 +130,37 @@ fn constants() {
             println!("constant pixels, {width} x {height} x {frames}, {n} samples: {error:.4}");
             let limit = if n > 1 { 1e-7 } else { 0.03 };
             assert!(error < limit, "{width} {height} {frames} {n}: {error}");
+        }
+    }
+}
+
+/// Windows of black pixels alone count in their pixels' averages as those do in which one is all but black, where fits
+/// are made.
+#[test]
+fn black_windows_are_windows() {
+    let mut rng = SplitMix64::new(7);
+    let (width, height) = (24, 16);
+    for (n, factor) in [1, 4, 5].into_iter().flat_map(|n| [(n, 0.0), (n, 0.5)]) {
+        let (u, mut f) = scene(width * height, n, 2, &mut rng);
+        let is_black = |sample: usize| sample / n % width < 13;
+        f.chunks_mut(2).enumerate().filter(|&(sample, _)| is_black(sample)).for_each(|(_, value)| value.fill(0.0));
+        let mut faint = f.clone();
+        for pixel in [0, 8, 8 * width, 8 * width + 8].map(|corner| corner + width + 1) {
+            faint[2 * n * pixel] = 1e-30;
+        }
+        let factors = vec![factor; 2 * width * height];
+        let of = Image { factors: &factors, ..Image::new(width, height) };
+        for (estimator, stratified) in SHARED.into_iter().flat_map(|estimator| [(estimator, false), (estimator, true)])
+        {
+            let config = Config { estimator, stratified, ..Config::new(2, 2, 2) };
+            let [black, almost] = [&f, &faint].map(|f| image(&config, &of, Samples::new(&u, f)).unwrap());
+            for (pixel, (black, almost)) in black.iter().zip(&almost).enumerate() {
+                let (x, y) = (pixel % width, pixel / width);
+                assert_eq!(black.mean[1], almost.mean[1], "{n} {estimator:?} {x}, {y}: {black:?} {almost:?}");
+                if x < 8 {
+                    assert_eq!((black.mean[0], black.std_error[0], black.gain), (0.0, 0.0, 1.0));
+                }
+            }
         }
     }
 }

@@ -159,6 +159,46 @@ fn parts_have_the_bits_of_the_whole() {
     }
 }
 
+/// Arrays with room for samples that are still to come, which are no numbers yet: the bits of arrays without.
+#[test]
+fn samples_to_come_are_not_read() {
+    let mut rng = SplitMix64::new(2);
+    for (n, room) in [(1, 1), (1, 7), (2, 2), (4, 4), (5, 3)] {
+        for (config, unordered) in [
+            (Config { edges: 1, ..Config::new(2, 2, 2) }, false),
+            (Config { slices: 3, ..Config::new(2, 1, 2) }, false),
+            (Config { estimator: Estimator::LeaveOneOut, stratified: true, ..Config::new(2, 2, 2) }, true),
+        ] {
+            let picture = Picture::new([13, 9, 2], n, true, &mut rng);
+            let with_room = |values: &[f32]| -> Vec<f32> {
+                let more = vec![f32::NAN; 2 * room];
+                values.chunks(2 * n).flat_map(|of_pixel| [of_pixel, &more].concat()).collect()
+            };
+            let all = &picture.arrays;
+            let roomy = Arrays {
+                u: with_room(&all.u),
+                f: with_room(&all.f),
+                known: with_room(&all.known),
+                surfaces: all.surfaces.clone(),
+                factors: all.factors.clone(),
+                integrals: all.integrals.clone(),
+            };
+            let base = Image { unordered, ..Image::new(13, 9) };
+            let expected = estimates(&config, &picture.image(all, &base), all).unwrap();
+            let of = Image { samples: n, ..picture.image(&roomy, &base) };
+            assert_eq!(
+                image_workspace_len(&config, &of, n + room),
+                image_workspace_len(&config, &picture.image(all, &base), n)
+            );
+            let found = estimates(&config, &of, &roomy).unwrap();
+            assert!(expected.iter().zip(&found).all(|(a, b)| same(a, b)), "{n} {room} {config:?}");
+            let refused = |samples| estimates(&config, &Image { samples, ..of }, &roomy).unwrap_err();
+            assert_eq!([0, n + 1, n + room].map(refused), [Error::NotFinite; 3]);
+            assert_eq!([n + room + 1, usize::MAX].map(refused), [Error::Range; 2]);
+        }
+    }
+}
+
 /// One column or row less than is needed is refused, as is what lies beyond the image.
 #[test]
 fn no_less_than_needed() {

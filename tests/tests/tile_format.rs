@@ -137,7 +137,10 @@ fn each_error() {
     }
     let error: Box<dyn std::error::Error> = Error::Range.into();
     assert!(error.to_string().contains("outside its documented range"));
-    assert_eq!(Error::NotFinite.to_string(), "an input value is NaN or infinite");
+    assert_eq!(
+        Error::NotFinite.to_string(),
+        "an input value is NaN or infinite: samples, factors, integrals or an argument"
+    );
 }
 
 #[test]

@@ -29,6 +29,6 @@ pub fn run(options: &Options) -> Result<()> {
     configure.args(library::settings().map(|setting| format!("-D{setting}")));
     configure.args(options.libdir.iter().map(|libdir| format!("-DCMAKE_INSTALL_LIBDIR={}", libdir.display())));
     run::read(&mut configure)?;
-    run::read(run::command("cmake").arg("--build").arg(&build).args(["--parallel", "2"]))?;
+    run::compile(run::command("cmake").arg("--build").arg(&build).args(["--parallel", "2"]))?;
     run::check(run::command("cmake").arg("--install").arg(&build))
 }

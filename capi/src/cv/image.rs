@@ -29,6 +29,8 @@ pub struct nf_cv_image {
     /// 1 if the pixels have no places: all of one surface, in all frames, share a fit. With `surfaces` at most 1024
     /// pixels. Their order must not follow a picture: shuffle them, above all for NF_CV_K_FOLD.
     pub unordered: u32,
+    /// How many of a pixel's `n` samples count, its first; 0 means all. No others are read: still to be traced, say.
+    pub samples: usize,
     /// A number for each pixel, or NULL: only pixels of the same number share a fit, those that show one material under
     /// a similar normal, say. It must not depend on the pixel's own samples, or no estimator is unbiased.
     pub surfaces: *const u32,
@@ -180,5 +182,6 @@ fn core_image(image: &nf_cv_image, has_known: bool) -> Result<Image<'static>, Wr
         Rectangle::new(x, y, width, height)
     };
     let (given, wanted) = (rectangle(&image.given), rectangle(&image.wanted));
-    Ok(Image { frames, window, stride, unordered, surfaces, known, given, wanted, ..Image::new(width, height) })
+    let all = Image { samples: image.samples, frames, window, stride, unordered, ..Image::new(width, height) };
+    Ok(Image { surfaces, known, given, wanted, ..all })
 }

@@ -19,13 +19,11 @@ pub struct nf_cv_samples {
     pub controls: *const f32,
     /// The integrals of the `controls` functions, finite.
     pub control_integrals: *const f32,
-    /// For nf_cv_image_estimate(), n rows of `channels` finite floats: what f would be with nothing in the way, the
-    /// unshadowed light. Pixels are then also corrected by how far its mean is from `known_integrals`, as far as their
-    /// neighbours follow it.
+    /// For nf_cv_image_estimate(), n rows of `channels` finite floats: f with nothing in the way, the unshadowed light.
+    /// Pixels are then also corrected by how far its mean is from `known_integrals`, as far as neighbours follow it.
     pub known: *const f32,
-    /// With `known`: `channels` floats for each pixel, its exact integrals over u, those of a polygon light in closed
-    /// form say. Finite, at least 0; a pixel with 0 is not corrected by it. Where the samples of a pixel see several
-    /// points, the mean of theirs.
+    /// With `known`: `channels` floats for each pixel, its exact integrals over u, those of a polygon, say. Finite, at
+    /// least 0; a pixel with 0 is not corrected by it. Where a pixel's samples see several points, the mean of theirs.
     pub known_integrals: *const f32,
 }
 

@@ -16,6 +16,8 @@ pub(super) struct Call<'a> {
     pub(super) shape: Shape,
     /// Samples of a pixel.
     pub(super) n: usize,
+    /// How many the arrays hold, of which these are the first.
+    pub(super) held: usize,
     pub(super) basis: &'a Basis,
     pub(super) reader: Reader<'a>,
 }

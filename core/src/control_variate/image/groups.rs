@@ -43,6 +43,17 @@ impl Place {
     }
 }
 
+/// What a group's samples are like.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Kind {
+    /// They have all the same values: the mean is exact, and nothing is fitted. Sky, background, deep shadow.
+    Constant,
+    #[default]
+    Smooth,
+    /// Lit and dark ones, where that matters.
+    Edges,
+}
+
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Group {
     /// Its number.
@@ -52,11 +63,10 @@ pub(super) struct Group {
     /// Where its pixels begin in the list.
     pub(super) start: usize,
     pub(super) len: usize,
-    /// Whether it has lit and dark samples, if that matters.
-    pub(super) has_edges: bool,
+    pub(super) kind: Kind,
 }
 
-/// Numbers of a record that are not told of its group: window, start, length, and whether it has edges, as bits.
+/// Numbers of a record that are not told of its group: window, start, length and kind, as bits.
 const RECORD: usize = 4;
 
 /// The groups of some windows, and what was found for them.
@@ -126,6 +136,22 @@ impl Call<'_> {
         if self.is_joined() { index } else { self.windows.number(left + x, top + y, frame) }
     }
 
+    /// What the samples of a group are like, which are those of `members` of a window.
+    fn kind(&self, window: usize, members: &[f32], len: usize) -> Kind {
+        let (corner, channels) = (self.window(window), self.config.channels);
+        let rows = |member: usize| {
+            let pixel = self.pixel(corner, Place::read(at(members, member)), member);
+            rows(part(self.reader.samples.f, pixel * self.held * channels, self.n * channels), channels)
+        };
+        let first = rows(0).next().unwrap_or_default();
+        // Values that differ in their factors alone differ in fits.
+        let has_one_factor = self.image.factors.is_empty() || first.iter().all(|&value| value == 0.0);
+        if has_one_factor && (0..len).all(|member| rows(member).all(|row| row == first)) {
+            return Kind::Constant;
+        }
+        if self.has_edge(window, members, len) { Kind::Edges } else { Kind::Smooth }
+    }
+
     /// Divides windows `first` to before `end` into groups.
     pub(super) fn divide(&self, first: usize, end: usize, groups: &mut Groups<'_>) {
         groups.count = 0;
@@ -190,19 +216,27 @@ impl Groups<'_> {
         if len < call.least() {
             return start;
         }
-        let has_edges = call.has_edge(window, part(self.list, start, len), len);
-        if let Some(record) = row_at_mut(self.records, self.width, self.count).first_chunk_mut::<RECORD>() {
-            *record = [window, start, len, usize::from(has_edges)].map(|number| f32::from_bits(number as u32));
-            self.count += 1;
+        let kind = call.kind(window, part(self.list, start, len), len);
+        let record = row_at_mut(self.records, self.width, self.count);
+        let Some((record, told)) = record.split_first_chunk_mut::<RECORD>() else { return start };
+        *record = [window, start, len, kind as usize].map(|number| f32::from_bits(number as u32));
+        if kind == Kind::Constant {
+            // No gain; and the group's error, or by how much the pixels' are multiplied.
+            told.fill(1.0);
+            let error = if call.error_is_the_groups() { 0.0 } else { 1.0 };
+            part_mut(told, 2, self.channels).fill(error);
+            part_mut(self.corrections, start * self.channels, len * self.channels).fill(0.0);
         }
+        self.count += 1;
         start + len
     }
 
     /// Group `index` in the order of their windows.
     pub(super) fn numbered(&self, index: usize) -> Group {
         let record = row_at(self.records, self.width, index).first_chunk::<RECORD>();
-        let [window, start, len, has_edges] = record.map_or([0; RECORD], |record| record.map(bits));
-        Group { index, window, start, len, has_edges: has_edges > 0 }
+        let [window, start, len, kind] = record.map_or([0; RECORD], |record| record.map(bits));
+        let kinds = [Kind::Constant, Kind::Smooth, Kind::Edges];
+        Group { index, window, start, len, kind: at(&kinds, kind) }
     }
 
     /// Orders the groups by size: eight that are worked on side by side then have about as many pixels.

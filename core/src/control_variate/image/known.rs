@@ -91,7 +91,7 @@ impl Batch<'_> {
                 let pixels = self.pixels((slot / AT_ONCE, slot % AT_ONCE));
                 for sample in 0..call.n {
                     for (sum, values) in [(&mut mean, call.reader.samples.f), (&mut known, call.image.known)] {
-                        let value = call.gather(values, &pixels, (call.n, sample), channel);
+                        let value = call.gather(values, &pixels, (call.held, sample), channel);
                         *sum = plus(sum, &value.map(|value| value * inverse));
                     }
                 }

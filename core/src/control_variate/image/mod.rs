@@ -66,12 +66,14 @@ use load::Loading;
 use sums::Band;
 use terms::Terms;
 
-/// Numbers of workspace that [`estimate_image`] needs for `n` samples in each pixel.
+/// Numbers of workspace that [`estimate_image`] needs for `n` samples in each pixel, or for `image.samples` of them.
 ///
 /// # Errors
 /// As for [`estimate_image`]; [`Error::Range`] also if no memory could be large enough.
 pub fn image_workspace_len(config: &Config, image: &Image<'_>, n: usize) -> Result<usize, Error> {
-    Call { n, ..Call::new(config, image, &Basis::empty())? }.workspace_len().ok_or(Error::Range)
+    let basis = Basis::empty();
+    let call = Call::new(config, image, &basis)?;
+    Call { n: image.used(n)?, ..call }.workspace_len().ok_or(Error::Range)
 }
 
 /// Which samples count must not depend on the pixel, the fit is of the channels, and other estimators share no fits.
@@ -92,9 +94,10 @@ fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
 /// ratio, for skipping samples, for control functions, for estimators other than the robust, leave-one-out and K-fold
 /// ones, for the last if something is known, and for solvers other than `Auto` and the normal equations;
 /// [`Error::Range`] also for an image without pixels or with more than [`Image::MAX_PIXELS`], for windows and parts
-/// that [`Image`] does not allow, for negative factors or integrals, and where only one of `known` and its integrals is
-/// there; [`Error::Length`] also for arrays of [`Image`]; [`Error::NotFinite`] for factors, for what is known and for
-/// integrals that are not finite. Of pixels that are not needed no number is looked at.
+/// that [`Image`] does not allow, for more samples than there are, for negative factors or integrals, and where only
+/// one of `known` and its integrals is there; [`Error::Length`] also for arrays of [`Image`]; [`Error::NotFinite`] for
+/// factors, for what is known and for integrals that are not finite. Of pixels that are not needed no number is looked
+/// at.
 ///
 /// ```
 /// use noisefloor::control_variate::{Config, Image, Samples, estimate_image, image_workspace_len};
@@ -137,13 +140,19 @@ pub fn estimate_image_by<P: Processor>(
     let call = Call::new(config, image, &basis)?;
     let reader = Reader::new(config, samples)?;
     image.check(config, call.pixels, samples.f.len())?;
-    let n = reader.len() / call.pixels.max(1);
-    ensure(n * call.pixels == reader.len(), Error::Length)?;
-    for pixels in call.windows.rows() {
-        image.check_values(config.channels, n, pixels.clone())?;
-        reader.part(pixels.start * n..pixels.end * n).check()?;
+    let held = reader.len() / call.pixels.max(1);
+    ensure(held * call.pixels == reader.len(), Error::Length)?;
+    let n = image.used(held)?;
+    for row in call.windows.rows() {
+        // Samples that count lie side by side, or only those of a pixel do.
+        let step = if n == held { row.len() } else { 1 };
+        for first in row.step_by(step.max(1)) {
+            let samples = first * held..(first + step - 1) * held + n;
+            image.check_values(config.channels, first..first + step, samples.clone())?;
+            reader.part(samples).check()?;
+        }
     }
-    let call = Call { n, reader, ..call };
+    let call = Call { n, held, reader, ..call };
     let mut arena = Arena::new(workspace, call.workspace_len())?;
     call.run::<P>(&mut arena, out);
     Ok(())
@@ -155,7 +164,7 @@ impl<'a> Call<'a> {
         let shape = config.checked_shape()?.apart();
         check_supported(config, image)?;
         let (windows, pixels) = (image.windows()?, image.pixels()?);
-        Ok(Self { config, image, windows, pixels, shape, n: 0, basis, reader: Reader::default() })
+        Ok(Self { config, image, windows, pixels, shape, n: 0, held: 0, basis, reader: Reader::default() })
     }
 
     /// How many rows of windows are worked on before pixels are written, and how many rows of pixels those touch.

@@ -7,7 +7,7 @@ use super::call::Call;
 use super::choice::{Choices, Shares, Spreads};
 use super::edges::Edges;
 use super::fit::Fits;
-use super::groups::{Group, Groups};
+use super::groups::{Group, Groups, Kind};
 use super::products::*;
 use super::steps;
 use super::sums::Band;
@@ -51,7 +51,7 @@ impl Call<'_> {
     fn fit<P: Processor>(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) {
         let later = if self.is_single_fit() { 0 } else { self.turns() };
         let (all, channels) = (self.fits_without_edges(), self.config.channels);
-        for (pass, has_edges) in (0..=later).flat_map(|pass| [(pass, false), (pass, true)]) {
+        for (pass, kind) in (0..=later).flat_map(|pass| [(pass, Kind::Smooth), (pass, Kind::Edges)]) {
             let turn = pass.checked_sub(1);
             let mut place = 0;
             // Groups of one size, which come one after the other, have the same.
@@ -61,7 +61,7 @@ impl Call<'_> {
                 let (mut used, mut columns) = (0, (0, 0));
                 // Eight, or fewer if the next have other columns.
                 while let Some(group) = groups.by_size(place).filter(|_| used < LANES) {
-                    let is_kind = group.has_edges == has_edges && (has_edges || all);
+                    let is_kind = group.kind == kind && (all || kind == Kind::Edges);
                     let (_, limits) = groups.found(&group);
                     let is_limited = |turn| row_at(limits, 2 * channels, turn).iter().any(|limit| limit.is_finite());
                     if is_kind && turn.is_none_or(is_limited) {
@@ -99,8 +99,8 @@ impl Call<'_> {
         arena: &mut Arena<'_, f32>,
     ) {
         let arena = &mut arena.scratch();
-        let [Group { len, has_edges, .. }, ..] = lanes;
-        let terms = Terms::new(self, len, has_edges);
+        let [Group { len, kind, .. }, ..] = lanes;
+        let terms = Terms::new(self, len, kind == Kind::Edges);
         let mut batch = Batch::new(self, terms, lanes, arena);
         steps::survey::<P>(&mut batch, groups);
         if let Some(turn) = turn {

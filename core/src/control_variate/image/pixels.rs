@@ -24,6 +24,9 @@ pub struct Image<'a> {
     pub height: usize,
     /// Images of the same pixels, at other times; they share fits. 0 means 1.
     pub frames: usize,
+    /// How many of a pixel's samples count, its first; 0 means all. No others are read: arrays may have room for those
+    /// that are still to come.
+    pub samples: usize,
     /// Whether the pixels have no places: all of the same surface, in all frames, then share one fit, whatever `window`
     /// and `stride` say. With `surfaces` they are at most [`Image::MAX_WINDOW`]. Which of them correct which, and
     /// choose for which, goes by their order: shuffle them where that follows a picture.
@@ -111,6 +114,7 @@ impl Image<'_> {
             width,
             height,
             frames: 1,
+            samples: 0,
             unordered: false,
             window: 0,
             stride: 0,
@@ -213,6 +217,12 @@ impl Image<'_> {
         self.frames.max(1)
     }
 
+    /// How many of a pixel's `held` samples count.
+    pub(super) fn used(&self, held: usize) -> Result<usize, Error> {
+        ensure(self.samples <= held, Error::Range)?;
+        Ok(if self.samples > 0 { self.samples } else { held })
+    }
+
     /// All pixels that are given, of all frames.
     pub(super) fn pixels(&self) -> Result<usize, Invalid> {
         let all = Rectangle::new(0, 0, self.width, self.height);
@@ -231,11 +241,16 @@ impl Image<'_> {
         ensure(self.known.is_empty() == self.known_integrals.is_empty(), Error::Range)
     }
 
-    /// Checks what the arrays say of some pixels, of `n` samples each.
-    pub(super) fn check_values(&self, channels: usize, n: usize, pixels: Range<usize>) -> Result<(), Error> {
-        let rows = |values, width| part(values, pixels.start * width, pixels.len() * width);
-        let [factors, integrals] = [self.factors, self.known_integrals].map(|values| rows(values, channels));
-        let mut values = [factors, integrals, rows(self.known, n * channels)].into_iter().flatten();
+    /// Checks what the arrays say of some pixels, and of some samples.
+    pub(super) fn check_values(
+        &self,
+        channels: usize,
+        pixels: Range<usize>,
+        samples: Range<usize>,
+    ) -> Result<(), Error> {
+        let rows = |values, range: &Range<usize>| part(values, range.start * channels, range.len() * channels);
+        let [factors, integrals] = [self.factors, self.known_integrals].map(|values| rows(values, &pixels));
+        let mut values = [factors, integrals, rows(self.known, &samples)].into_iter().flatten();
         ensure(values.all(|value| value.is_finite()), Error::NotFinite)?;
         ensure(factors.iter().chain(integrals).all(|&value| value >= 0.0), Error::Range)
     }

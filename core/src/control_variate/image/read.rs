@@ -25,7 +25,7 @@ impl Call<'_> {
         for begin in (0..self.n).step_by(AT_ONCE) {
             let mut four = [NONE; AT_ONCE];
             let values = first_mut(&mut four, AT_ONCE.min(self.n - begin));
-            self.put_rows(self.reader.samples.f, pixels, (self.n, begin), channel, values);
+            self.put_rows(self.reader.samples.f, pixels, (self.held, begin), channel, values);
             for value in values {
                 low = lanes::zip(value, &low, Real::min);
                 high = lanes::zip(value, &high, Real::max);
@@ -100,7 +100,7 @@ impl Call<'_> {
         let Rows { x, columns, values } = rows;
         for (run, slot) in slots.enumerate() {
             let pixels = batch.pixels((block, slot));
-            let first = pixels.map(|pixel| pixel * self.n + samples.start);
+            let first = pixels.map(|pixel| pixel * self.held + samples.start);
             self.reader.put_positions(&first, samples.len(), run * LANES, x);
             self.put_values(batch, (block, slot), &pixels, &samples, run, values);
         }
@@ -140,13 +140,13 @@ impl Call<'_> {
             match batch.ranges.get(index(channel)) {
                 // The survey has read it.
                 Some([only, _]) if self.n == 1 => out.fill(*only),
-                _ => self.put_rows(self.reader.samples.f, pixels, (self.n, samples.start), channel, out),
+                _ => self.put_rows(self.reader.samples.f, pixels, (self.held, samples.start), channel, out),
             }
         }
         for (channel, (out, values)) in rest.iter_mut().zip(inputs).enumerate() {
             let out = part_mut(out, row, samples.len());
             let [coefficient, integral] = [&*batch.coefficients, &*batch.integrals].map(|all| at(all, index(channel)));
-            self.put_rows(self.image.known, pixels, (self.n, samples.start), channel, out);
+            self.put_rows(self.image.known, pixels, (self.held, samples.start), channel, out);
             for (out, value) in out.iter_mut().zip(from(values, row)) {
                 *out = lanes::minus_product(*value, coefficient, minus(out, &integral));
             }

@@ -3,7 +3,7 @@
 use super::super::config::{Config, Estimate};
 use super::super::result::{mean_divisor, saturate, standard_error};
 use super::call::Call;
-use super::groups::{Groups, Place};
+use super::groups::{Groups, Kind, Place};
 use super::products::*;
 
 /// Sums of a pixel that are not a channel's: the weight of the groups that it was in, of those with an error, and their
@@ -98,7 +98,8 @@ impl Call<'_> {
         let [rows, width] = [band.rows, self.eights() * LANES].map(|extent| extent as u32);
         let [across, down, _] = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
         let all = self.fits_without_edges();
-        for group in (0..groups.count).map(|index| groups.numbered(index)).filter(|group| all || group.has_edges) {
+        let groups_of = (0..groups.count).map(|index| groups.numbered(index));
+        for group in groups_of.filter(|group| all || group.kind == Kind::Edges) {
             let Some(([gain, has_error], errors)) = groups.found(&group).0.split_first_chunk() else { continue };
             let window = self.window(group.window);
             let (left, top) = (window[0] - self.windows.needed.x, window[1] % band.rows.max(1));
@@ -263,8 +264,8 @@ impl Call<'_> {
 
     /// A channel of a sample of each pixel, as it was given; 0 of those that are not there.
     fn given(&self, (pixel, there): (usize, usize), sample: usize, channel: usize) -> Wide {
-        let (channels, step) = (self.config.channels, self.n * self.config.channels);
-        let begin = (pixel * self.n + sample) * channels + channel;
+        let (channels, step) = (self.config.channels, self.held * self.config.channels);
+        let begin = (pixel * self.held + sample) * channels + channel;
         wide(&every(step, part(self.reader.samples.f, begin, (there.max(1) - 1) * step + 1)))
     }
 }

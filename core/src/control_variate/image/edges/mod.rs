@@ -39,7 +39,7 @@ impl Call<'_> {
         let (window, channels) = (self.window(window), self.config.channels);
         let is_lit = |member: usize, sample: usize| {
             let pixel = self.pixel(window, Place::read(at(members, member)), member);
-            row_at(self.reader.samples.f, channels, pixel * self.n + sample).iter().any(|&value| value > 0.0)
+            row_at(self.reader.samples.f, channels, pixel * self.held + sample).iter().any(|&value| value > 0.0)
         };
         let first = is_lit(0, 0);
         (0..len).any(|member| (0..self.n).any(|sample| is_lit(member, sample) != first))
@@ -112,10 +112,10 @@ impl<'a> Edges<'a> {
             let [u, v, lit, values @ ..] = out else { return };
             for row in 0..AT_ONCE {
                 let pixels = batch.pixels((block, row));
-                call.reader.put_positions(&pixels.map(|pixel| pixel * call.n + sample), 1, row * LANES, &mut x);
+                call.reader.put_positions(&pixels.map(|pixel| pixel * call.held + sample), 1, row * LANES, &mut x);
                 lit[row] = NONE;
                 for (channel, (value, units)) in values.iter_mut().zip(&batch.units).enumerate() {
-                    let input = call.gather(call.reader.samples.f, &pixels, (call.n, sample), channel);
+                    let input = call.gather(call.reader.samples.f, &pixels, (call.held, sample), channel);
                     lit[row] = lanes::zip(&lit[row], &input, |lit, input| if input > 0.0 { 1.0 } else { lit });
                     value[row] = units.scale(&input);
                 }
