@@ -402,6 +402,13 @@ public:
         return detail::finish(detail::blame(code, *this), all);
     }
 
+    // How many of each pixel's samples count, its first: nf_cv_image::samples.
+    image with_samples(std::size_t first) const noexcept
+    {
+        image copy = *this;
+        copy.samples = first;
+        return copy;
+    }
     // Pixels in no order: nf_cv_image::unordered.
     image without_places(bool value = true) const noexcept
     {

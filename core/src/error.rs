@@ -35,9 +35,9 @@ impl Error {
         match self {
             Error::Range => {
                 c"an argument is outside its documented range, which the function's description says: of a \
-                  configuration nf_check(), in Rust `check`, names the field; if it names none, look at the arrays"
+                  configuration nf_check(), in Rust `check`, names the field; else look at arrays and counts"
             }
-            Error::NotFinite => c"an input value is NaN or infinite: samples, factors, integrals or an argument",
+            Error::NotFinite => c"an input value, of an array or an argument, is NaN or infinite",
             Error::Memory => c"caller-supplied memory is too small: the function's description says how much it needs",
             Error::NoSamples => c"no samples, or nothing that can be drawn",
             Error::Unsupported => c"this combination of options is not supported: the description says which is",

@@ -47,8 +47,8 @@ pub struct Recommendation {
     /// With which configuration. Its `channels` is 1: set your own. Its `stride` is all dims, its `dims` those that are
     /// regressed.
     pub config: Config,
-    /// The [`Image::stride`](crate::control_variate::Image::stride) of [`Method::Shared`], for windows of 8. Half of
-    /// that, overlapping windows, has less error and pays from twice the cost on.
+    /// The [`Image::stride`](crate::control_variate::Image::stride) of [`Method::Shared`], for windows of 8. Where it
+    /// is 8, 4, overlapping windows, has less error and pays from twice [`Recommendation::pays_from`] on.
     pub image_stride: usize,
     /// Which built-in tile to draw from, if there is a choice: its samples per pixel. One of 1 sample is continued as a
     /// Sobol sequence.

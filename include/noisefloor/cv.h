@@ -149,7 +149,7 @@ typedef struct nf_cv_image {
     // 1 if the pixels have no places: all of one surface, in all frames, share a fit. With `surfaces` at most 1024
     // pixels. Their order must not follow a picture: shuffle them, above all for NF_CV_K_FOLD.
     uint32_t unordered;
-    // How many of a pixel's `n` samples count, its first; 0 means all. No others are read: still to be traced, say.
+    // How many of a pixel's `n` samples count, its first; 0 means all. Nobody may write to the others meanwhile.
     size_t samples;
     // A number for each pixel, or NULL: only pixels of the same number share a fit, those that show one material under
     // a similar normal, say. It must not depend on the pixel's own samples, or no estimator is unbiased.
@@ -171,13 +171,13 @@ typedef struct nf_cv_image {
 // NF_ERR_RANGE: what nf_check() says of the windows and `wanted`.
 nf_status nf_cv_image_needed(const nf_cv_image *image, nf_cv_rectangle *out);
 
-// Bytes of workspace that nf_cv_image_estimate() needs for `samples->n` samples in each pixel, more with `known`; 0 as
-// for nf_cv_workspace_size(), and for what is refused there. No array is read.
+// Bytes of workspace that nf_cv_image_estimate() needs for as many samples in each pixel, more with `known`, also more
+// for fewer; 0 as for nf_cv_workspace_size(), and for what is refused there. No array is read.
 size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image *image, const nf_cv_samples *samples);
 
-// Estimates the pixels of an image from `samples->n` samples in each: out[wanted pixels * frames]. Pixels of one
-// window and surface share a fit, which follows integrands that change across the window; each pixel is corrected by a
-// fit to the others' samples (section 4.3.6), even from one sample. Computed in float.
+// Estimates the pixels of an image from `samples->n`, or `image->samples`, in each: out[wanted pixels * frames].
+// Pixels of one window and surface share a fit, which follows integrands that change across the window; each pixel is
+// corrected by a fit to the others' samples (section 4.3.6), even from one sample. Computed in float.
 //
 // NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
 // they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and, without `known`, a `ridge`
@@ -188,8 +188,8 @@ size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image 
 // With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST without a `ridge` chooses
 // among fits to f and to what is left of it, with order 0 between the mean and what is known.
 // NF_ERR_UNSUPPORTED: other estimators and solvers, `controls`, NF_NONFINITE_SKIP, luminance ratio, `known` with
-// NF_CV_K_FOLD; NF_ERR_RANGE also for the image, negative factors or integrals, and `known` without integrals or they
-// without it; else as for nf_cv_estimate().
+// NF_CV_K_FOLD; NF_ERR_RANGE also for the image, `samples` above n, negative factors or integrals, and `known` without
+// integrals or they without it; else as for nf_cv_estimate().
 nf_status nf_cv_image_estimate(const nf_cv_config *config, const nf_cv_image *image, const nf_cv_samples *samples,
     void *workspace, size_t bytes, nf_estimate *out);
 
@@ -257,7 +257,7 @@ nf_status nf_cv_accumulator_estimate(const nf_cv_accumulator *accumulator, void 
 // What nf_recommend() says.
 typedef struct nf_recommendation {
     uint32_t method; // How to make estimates of the samples: NF_METHOD_*
-    // `stride` of nf_cv_image for NF_METHOD_SHARED, in windows of 8. 0: overlapping ones, less error, more time.
+    // `stride` of nf_cv_image for NF_METHOD_SHARED, in windows of 8. For 8, 4 has less error in more time.
     uint32_t image_stride;
     // Which tile of the library to draw from, if there is a choice: its samples per pixel. One of 1 sample is
     // continued as a Sobol sequence.

@@ -260,6 +260,7 @@ static void images()
     plain.width = plain.height = plain.window = 4;
     plain.frames = 1;
     plain.stride = 2;
+    CHECK(image.samples == 0 && image.with_samples(3).samples == 3);
     CHECK(image.unordered == 0 && image.without_places().unordered == 1 && !image.with_surfaces({}).fits(config));
     CHECK(config.image_workspace_size(image, 4) == image_workspace_size(&config, &plain, 4));
     CHECK(config.image_workspace_size(image, 4) > 0 && config.image_workspace_size(image, 4) <= sizeof workspace);

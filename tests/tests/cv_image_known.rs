@@ -225,6 +225,25 @@ fn a_constant_share_is_exact() {
     }
 }
 
+/// Samples that are all alike, but for what is known of them, are corrected as those are of which one differs a little:
+/// whether a pixel is corrected must not depend on its own value.
+#[test]
+fn equal_values_are_corrected_as_others() {
+    let mut rng = SplitMix64::new(9);
+    for n in [1, 4] {
+        let mut frame = Frame::new(n, &mut rng);
+        frame.f.fill(1.0);
+        let plain = |frame: &Frame| frame.means(&alone(1), &Image { factors: &[], ..frame.image() });
+        let equal = plain(&frame);
+        let moved = equal.iter().map(|mean| (mean - 1.0).abs()).fold(0.0, f64::max);
+        assert!(moved > 1e-3, "{n}: {moved}");
+        *frame.f.last_mut().unwrap() += 1e-5;
+        for (pixel, (equal, other)) in equal.iter().zip(plain(&frame)).enumerate() {
+            assert!((equal - other).abs() < 1e-4, "{n} {pixel}: {equal} {other}");
+        }
+    }
+}
+
 /// The mean over many frames is the integral, of all pixels together and of some. |z| < 4.75 by chance with probability
 /// 2e-6, of 14 deviates; with integrals that are 5 % too large it is not.
 #[test]

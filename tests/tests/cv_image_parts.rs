@@ -195,6 +195,9 @@ fn samples_to_come_are_not_read() {
             let refused = |samples| estimates(&config, &Image { samples, ..of }, &roomy).unwrap_err();
             assert_eq!([0, n + 1, n + room].map(refused), [Error::NotFinite; 3]);
             assert_eq!([n + room + 1, usize::MAX].map(refused), [Error::Range; 2]);
+            // More samples than 32 bits count are refused, also where few of them count.
+            let huge = Image { samples: n, ..Image::new(1 << 10, 1 << 10) };
+            assert_eq!(image_workspace_len(&config, &huge, 1 << 12), Err(Error::Range));
         }
     }
 }

@@ -137,10 +137,7 @@ fn each_error() {
     }
     let error: Box<dyn std::error::Error> = Error::Range.into();
     assert!(error.to_string().contains("outside its documented range"));
-    assert_eq!(
-        Error::NotFinite.to_string(),
-        "an input value is NaN or infinite: samples, factors, integrals or an argument"
-    );
+    assert_eq!(Error::NotFinite.to_string(), "an input value, of an array or an argument, is NaN or infinite");
 }
 
 #[test]

@@ -29,7 +29,7 @@ pub struct nf_cv_image {
     /// 1 if the pixels have no places: all of one surface, in all frames, share a fit. With `surfaces` at most 1024
     /// pixels. Their order must not follow a picture: shuffle them, above all for NF_CV_K_FOLD.
     pub unordered: u32,
-    /// How many of a pixel's `n` samples count, its first; 0 means all. No others are read: still to be traced, say.
+    /// How many of a pixel's `n` samples count, its first; 0 means all. Nobody may write to the others meanwhile.
     pub samples: usize,
     /// A number for each pixel, or NULL: only pixels of the same number share a fit, those that show one material under
     /// a similar normal, say. It must not depend on the pixel's own samples, or no estimator is unbiased.
@@ -77,8 +77,8 @@ pub unsafe extern "C" fn nf_cv_image_needed(image: *const nf_cv_image, out: *mut
     })())
 }
 
-/// Bytes of workspace that nf_cv_image_estimate() needs for `samples->n` samples in each pixel, more with `known`; 0 as
-/// for nf_cv_workspace_size(), and for what is refused there. No array is read.
+/// Bytes of workspace that nf_cv_image_estimate() needs for as many samples in each pixel, more with `known`, also more
+/// for fewer; 0 as for nf_cv_workspace_size(), and for what is refused there. No array is read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_workspace_size(
     config: *const nf_cv_config,
@@ -95,9 +95,9 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
     len().ok().and_then(|len| len.checked_mul(size_of::<f32>())).unwrap_or(0)
 }
 
-/// Estimates the pixels of an image from `samples->n` samples in each: out[wanted pixels * frames]. Pixels of one
-/// window and surface share a fit, which follows integrands that change across the window; each pixel is corrected by a
-/// fit to the others' samples (section 4.3.6), even from one sample. Computed in float.
+/// Estimates the pixels of an image from `samples->n`, or `image->samples`, in each: out[wanted pixels * frames].
+/// Pixels of one window and surface share a fit, which follows integrands that change across the window; each pixel is
+/// corrected by a fit to the others' samples (section 4.3.6), even from one sample. Computed in float.
 ///
 /// NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
 /// they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and, without `known`, a `ridge`
@@ -109,8 +109,8 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
 /// among fits to f and to what is left of it, with order 0 between the mean and what is known.
 ///
 /// NF_ERR_UNSUPPORTED: other estimators and solvers, `controls`, NF_NONFINITE_SKIP, luminance ratio, `known` with
-/// NF_CV_K_FOLD; NF_ERR_RANGE also for the image, negative factors or integrals, and `known` without integrals or they
-/// without it; else as for nf_cv_estimate().
+/// NF_CV_K_FOLD; NF_ERR_RANGE also for the image, `samples` above n, negative factors or integrals, and `known` without
+/// integrals or they without it; else as for nf_cv_estimate().
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_estimate(
     config: *const nf_cv_config,

@@ -46,7 +46,7 @@ impl Place {
 /// What a group's samples are like.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Kind {
-    /// They have all the same values: the mean is exact, and nothing is fitted. Sky, background, deep shadow.
+    /// They have all the same values, and nothing is left to fit. Sky, background, deep shadow.
     Constant,
     #[default]
     Smooth,
@@ -144,9 +144,10 @@ impl Call<'_> {
             rows(part(self.reader.samples.f, pixel * self.held * channels, self.n * channels), channels)
         };
         let first = rows(0).next().unwrap_or_default();
-        // Values that differ in their factors alone differ in fits.
-        let has_one_factor = self.image.factors.is_empty() || first.iter().all(|&value| value == 0.0);
-        if has_one_factor && (0..len).all(|member| rows(member).all(|row| row == first)) {
+        // Values that differ in their factors, or in what is known of them, differ in fits. Few pixels have no error.
+        let is_alone = self.image.factors.is_empty() && !self.image.has_known();
+        let may_be = (is_alone || first.iter().all(|&value| value == 0.0)) && len >= self.windows.axes() + 3;
+        if may_be && (0..len).all(|member| rows(member).all(|row| row == first)) {
             return Kind::Constant;
         }
         if self.has_edge(window, members, len) { Kind::Edges } else { Kind::Smooth }

@@ -73,7 +73,7 @@ use terms::Terms;
 pub fn image_workspace_len(config: &Config, image: &Image<'_>, n: usize) -> Result<usize, Error> {
     let basis = Basis::empty();
     let call = Call::new(config, image, &basis)?;
-    Call { n: image.used(n)?, ..call }.workspace_len().ok_or(Error::Range)
+    Call { n: image.used(n)?, held: n, ..call }.workspace_len().ok_or(Error::Range)
 }
 
 /// Which samples count must not depend on the pixel, the fit is of the channels, and other estimators share no fits.
@@ -178,7 +178,7 @@ impl<'a> Call<'a> {
     /// Counts what a call takes, by making all of it.
     fn workspace_len(&self) -> Option<usize> {
         // More samples than 32 bits count need more memory than there is.
-        u32::try_from(self.pixels.checked_mul(self.n)?).ok()?;
+        u32::try_from(self.pixels.checked_mul(self.held)?).ok()?;
         let (arena, len) = (&mut Arena::count(), self.windows.pixels());
         Band::new(self, self.band()[1], arena);
         self.groups(arena);

@@ -25,7 +25,7 @@ pub struct Image<'a> {
     /// Images of the same pixels, at other times; they share fits. 0 means 1.
     pub frames: usize,
     /// How many of a pixel's samples count, its first; 0 means all. No others are read: arrays may have room for those
-    /// that are still to come.
+    /// that are still to come. The workspace depends on it.
     pub samples: usize,
     /// Whether the pixels have no places: all of the same surface, in all frames, then share one fit, whatever `window`
     /// and `stride` say. With `surfaces` they are at most [`Image::MAX_WINDOW`]. Which of them correct which, and
