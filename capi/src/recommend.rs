@@ -25,7 +25,7 @@ pub const NF_METHOD_SHARED: u32 = 2;
 pub struct nf_recommendation {
     /// How to make estimates of the samples: NF_METHOD_*
     pub method: u32,
-    /// `stride` of nf_cv_image for NF_METHOD_SHARED, in windows of 8. For 8, 4 has less error in more time.
+    /// `stride` of nf_cv_image for NF_METHOD_SHARED, in windows of 8. Where 8, 4 has less error in more time.
     pub image_stride: u32,
     /// Which tile of the library to draw from, if there is a choice: its samples per pixel. One of 1 sample is
     /// continued as a Sobol sequence.

@@ -171,11 +171,11 @@ typedef struct nf_cv_image {
 // NF_ERR_RANGE: what nf_check() says of the windows and `wanted`.
 nf_status nf_cv_image_needed(const nf_cv_image *image, nf_cv_rectangle *out);
 
-// Bytes of workspace that nf_cv_image_estimate() needs for as many samples in each pixel, more with `known`, also more
-// for fewer; 0 as for nf_cv_workspace_size(), and for what is refused there. No array is read.
+// Bytes of workspace that nf_cv_image_estimate() needs with these arguments: more with `known`, and at times for fewer
+// samples. 0 as for nf_cv_workspace_size(), and for what is refused there. No array is read.
 size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image *image, const nf_cv_samples *samples);
 
-// Estimates the pixels of an image from `samples->n`, or `image->samples`, in each: out[wanted pixels * frames].
+// Estimates an image's pixels from `samples->n` samples in each, or `image->samples`: out[wanted pixels * frames].
 // Pixels of one window and surface share a fit, which follows integrands that change across the window; each pixel is
 // corrected by a fit to the others' samples (section 4.3.6), even from one sample. Computed in float.
 //
@@ -257,7 +257,7 @@ nf_status nf_cv_accumulator_estimate(const nf_cv_accumulator *accumulator, void 
 // What nf_recommend() says.
 typedef struct nf_recommendation {
     uint32_t method; // How to make estimates of the samples: NF_METHOD_*
-    // `stride` of nf_cv_image for NF_METHOD_SHARED, in windows of 8. For 8, 4 has less error in more time.
+    // `stride` of nf_cv_image for NF_METHOD_SHARED, in windows of 8. Where 8, 4 has less error in more time.
     uint32_t image_stride;
     // Which tile of the library to draw from, if there is a choice: its samples per pixel. One of 1 sample is
     // continued as a Sobol sequence.

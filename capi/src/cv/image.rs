@@ -77,8 +77,8 @@ pub unsafe extern "C" fn nf_cv_image_needed(image: *const nf_cv_image, out: *mut
     })())
 }
 
-/// Bytes of workspace that nf_cv_image_estimate() needs for as many samples in each pixel, more with `known`, also more
-/// for fewer; 0 as for nf_cv_workspace_size(), and for what is refused there. No array is read.
+/// Bytes of workspace that nf_cv_image_estimate() needs with these arguments: more with `known`, and at times for fewer
+/// samples. 0 as for nf_cv_workspace_size(), and for what is refused there. No array is read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_workspace_size(
     config: *const nf_cv_config,
@@ -95,7 +95,7 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
     len().ok().and_then(|len| len.checked_mul(size_of::<f32>())).unwrap_or(0)
 }
 
-/// Estimates the pixels of an image from `samples->n`, or `image->samples`, in each: out[wanted pixels * frames].
+/// Estimates an image's pixels from `samples->n` samples in each, or `image->samples`: out[wanted pixels * frames].
 /// Pixels of one window and surface share a fit, which follows integrands that change across the window; each pixel is
 /// corrected by a fit to the others' samples (section 4.3.6), even from one sample. Computed in float.
 ///

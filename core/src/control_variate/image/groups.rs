@@ -54,6 +54,11 @@ pub(super) enum Kind {
     Edges,
 }
 
+impl Kind {
+    /// Each at the place of its number, which records keep.
+    const ALL: [Self; 3] = [Self::Constant, Self::Smooth, Self::Edges];
+}
+
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Group {
     /// Its number.
@@ -99,10 +104,15 @@ impl Call<'_> {
         !self.windows.is_ordered && self.image.surfaces.is_empty() && self.windows.pixels() >= MANY
     }
 
-    /// The fewest pixels of a group for which a fit can do more than the mean. Of one sample in each, fewer would leave
-    /// no digits of what is left of them beside their trend.
+    /// The fewest pixels of a group for which a fit can do more than the mean.
     fn least(&self) -> usize {
-        if self.is_single_fit() && self.n > 1 { 2 } else { self.windows.axes() + 3 }
+        if self.is_single_fit() && self.n > 1 { 2 } else { self.with_spread() }
+    }
+
+    /// The fewest pixels whose spread about their trend says something. Of one sample in each, fewer would leave no
+    /// digits of what is left of them.
+    fn with_spread(&self) -> usize {
+        self.windows.axes() + 3
     }
 
     /// Room for those of as many windows as are worked on together.
@@ -139,18 +149,22 @@ impl Call<'_> {
     /// What the samples of a group are like, which are those of `members` of a window.
     fn kind(&self, window: usize, members: &[f32], len: usize) -> Kind {
         let (corner, channels) = (self.window(window), self.config.channels);
-        let rows = |member: usize| {
+        let mut samples = (0..len).flat_map(|member| {
             let pixel = self.pixel(corner, Place::read(at(members, member)), member);
             rows(part(self.reader.samples.f, pixel * self.held * channels, self.n * channels), channels)
-        };
-        let first = rows(0).next().unwrap_or_default();
+        });
+        let Some(first) = samples.next() else { return Kind::Smooth };
         // Values that differ in their factors, or in what is known of them, differ in fits. Few pixels have no error.
         let is_alone = self.image.factors.is_empty() && !self.image.has_known();
-        let may_be = (is_alone || first.iter().all(|&value| value == 0.0)) && len >= self.windows.axes() + 3;
-        if may_be && (0..len).all(|member| rows(member).all(|row| row == first)) {
-            return Kind::Constant;
+        let may_be = (is_alone || first.iter().all(|&value| value == 0.0)) && len >= self.with_spread();
+        let is_lit = |sample: &[f32]| sample.iter().any(|&value| value > 0.0);
+        if may_be && samples.clone().all(|sample| sample == first) {
+            Kind::Constant
+        } else if self.may_have_edge(len) && samples.any(|sample| is_lit(sample) != is_lit(first)) {
+            Kind::Edges
+        } else {
+            Kind::Smooth
         }
-        if self.has_edge(window, members, len) { Kind::Edges } else { Kind::Smooth }
     }
 
     /// Divides windows `first` to before `end` into groups.
@@ -222,7 +236,8 @@ impl Groups<'_> {
         let Some((record, told)) = record.split_first_chunk_mut::<RECORD>() else { return start };
         *record = [window, start, len, kind as usize].map(|number| f32::from_bits(number as u32));
         if kind == Kind::Constant {
-            // No gain; and the group's error, or by how much the pixels' are multiplied.
+            // No gain; the group's error, or by how much the pixels' are multiplied; and limits that are numbers, as
+            // lanes without a group read those of the first.
             told.fill(1.0);
             let error = if call.error_is_the_groups() { 0.0 } else { 1.0 };
             part_mut(told, 2, self.channels).fill(error);
@@ -236,8 +251,7 @@ impl Groups<'_> {
     pub(super) fn numbered(&self, index: usize) -> Group {
         let record = row_at(self.records, self.width, index).first_chunk::<RECORD>();
         let [window, start, len, kind] = record.map_or([0; RECORD], |record| record.map(bits));
-        let kinds = [Kind::Constant, Kind::Smooth, Kind::Edges];
-        Group { index, window, start, len, kind: at(&kinds, kind) }
+        Group { index, window, start, len, kind: at(&Kind::ALL, kind) }
     }
 
     /// Orders the groups by size: eight that are worked on side by side then have about as many pixels.

@@ -98,8 +98,8 @@ impl Call<'_> {
         let [rows, width] = [band.rows, self.eights() * LANES].map(|extent| extent as u32);
         let [across, down, _] = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
         let all = self.fits_without_edges();
-        let groups_of = (0..groups.count).map(|index| groups.numbered(index));
-        for group in groups_of.filter(|group| all || group.kind == Kind::Edges) {
+        let numbered = (0..groups.count).map(|index| groups.numbered(index));
+        for group in numbered.filter(|group| all || group.kind == Kind::Edges) {
             let Some(([gain, has_error], errors)) = groups.found(&group).0.split_first_chunk() else { continue };
             let window = self.window(group.window);
             let (left, top) = (window[0] - self.windows.needed.x, window[1] % band.rows.max(1));

@@ -13,7 +13,6 @@ mod regression;
 use super::batch::{Batch, MAX_FIXED};
 use super::call::Call;
 use super::fit::Fits;
-use super::groups::Place;
 use super::products::*;
 use crate::basis::MAX_DIMS;
 use crate::control_variate::Config;
@@ -31,18 +30,9 @@ impl Call<'_> {
         self.config.edges > 0 && self.n >= FEWEST_SAMPLES && !self.is_single_fit()
     }
 
-    /// Whether a group, `members` of a window, has lit and dark samples, if edges are looked for.
-    pub(super) fn has_edge(&self, window: usize, members: &[f32], len: usize) -> bool {
-        if !self.has_edges() || len < FEWEST_PIXELS {
-            return false;
-        }
-        let (window, channels) = (self.window(window), self.config.channels);
-        let is_lit = |member: usize, sample: usize| {
-            let pixel = self.pixel(window, Place::read(at(members, member)), member);
-            row_at(self.reader.samples.f, channels, pixel * self.held + sample).iter().any(|&value| value > 0.0)
-        };
-        let first = is_lit(0, 0);
-        (0..len).any(|member| (0..self.n).any(|sample| is_lit(member, sample) != first))
+    /// Whether an edge is looked for in a group of so many pixels.
+    pub(super) fn may_have_edge(&self, len: usize) -> bool {
+        self.has_edges() && len >= FEWEST_PIXELS
     }
 }
 
