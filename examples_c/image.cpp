@@ -63,7 +63,7 @@ static std::vector<nf_estimate> estimate(std::vector<float> &f)
         surfaces[i] = surface_at(i);                    // yours: pixels with the same number share fits
     }
     nf_cv_config config = {};
-    config.dims = dims, config.order = 2, config.channels = 1;
+    config.dims = dims, config.order = 3, config.channels = 1;
     config.stratified = 1;                              // nf_sampler spreads samples evenly
     nf_cv_samples traced = {};
     traced.u = u.data(), traced.f = f.data(), traced.n = samples;

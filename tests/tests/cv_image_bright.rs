@@ -143,7 +143,7 @@ fn rare_bright_samples() {
     for (part, limits) in [(0.01, [0.99, 0.985]), (0.02, [0.96, 0.93]), (0.05, [0.79, 0.72]), (0.1, [0.57, 0.53])] {
         for (n, limit) in [1, 4].into_iter().zip(limits) {
             let value = |_: usize, u: [f64; 2]| [f64::from(u8::from(u[0] < part)), part];
-            let ratio = ratio(Estimator::Robust, &Image::new(16, 16), n, 100, value, |_| true);
+            let ratio = ratio(Estimator::Robust, &Image::new(16, 16), n, 200, value, |_| true);
             check(&format!("part {part}, {n} samples"), ratio, limit);
         }
     }

@@ -232,13 +232,13 @@ impl Case {
         windows
     }
 
-    /// How many functions have products with the axes, in fits to a group and to its halves: degree 2 or 1 or none, as
-    /// far as there are two samples for each column.
+    /// How many functions have products with the axes, in fits to a group and to its halves: those of degree 1, or none
+    /// where there are no more than four samples for each column.
     fn moving(&self, group: &[Member], degrees: &[usize]) -> usize {
         let axes = group[0].at.len();
-        let up_to = |degree: usize| degrees.iter().filter(|&&other| other <= degree).count();
-        let fits = |&moving: &usize| 2 * (1 + axes + degrees.len() + axes * moving) <= group.len() * self.n;
-        if axes == 0 { 0 } else { [up_to(2), up_to(1)].into_iter().find(fits).unwrap_or(0) }
+        let lines = degrees.iter().filter(|&&degree| degree <= 1).count();
+        let columns = 1 + axes + degrees.len() + axes * lines;
+        if 4 * columns < group.len() * self.n { lines } else { 0 }
     }
 
     /// A pixel's values of a channel, as fits see them.

@@ -112,15 +112,11 @@ impl Case {
         }
         let basis = design(config, &wide(&self.u));
         let axes = self.place(pixel).len();
-        // Functions with products: whole degrees, at most 2, below the order, two samples for each column.
+        // Functions with products: of degree 1, if more than four samples are left for each column.
         let degrees: Vec<usize> = basis_degrees(config);
-        let up_to = |degree: usize| degrees.iter().filter(|&&other| other <= degree).count();
-        let columns = 1 + axes + basis.weights.len();
-        let highest = 2.min(config.order.saturating_sub(1)).max(1);
-        let fits = |&degree: &usize| 2 * (columns + axes * up_to(degree)) <= all.len();
-        let moving = if axes == 0 { None } else { (1..=highest).rev().find(fits) };
-        let moving: Vec<usize> =
-            (0..degrees.len()).filter(|&j| moving.is_some_and(|most| degrees[j] <= most)).collect();
+        let lines: Vec<usize> = (0..degrees.len()).filter(|&j| degrees[j] <= 1).collect();
+        let columns = 1 + axes + basis.weights.len() + axes * lines.len();
+        let moving = if 4 * columns < all.len() { lines } else { Vec::new() };
 
         let row = |&(sample, pixel): &(usize, usize)| {
             let (place, functions) = (self.place(pixel), &basis.rows[sample]);

@@ -9,8 +9,9 @@ use heapless::Vec;
 
 /// The most candidates: one for each degree, one with every slice's own functions, one with all columns.
 pub(super) const MAX_FITS: usize = MAX_ORDER + 2;
-/// The highest degree of the functions whose coefficients may change across a group.
-const MOVING_DEGREE: usize = 2;
+/// Coefficients change across a group where each column has more samples than this. Real scenes' change little, and
+/// every sample pays for the columns.
+const SAMPLES_OF_COLUMN: usize = 4;
 /// No products that make more columns than this.
 const MOST_COLUMNS: usize = 192;
 /// Relative penalty of the values' trend along an axis: next to none.
@@ -28,7 +29,7 @@ pub(super) fn scale(config: &Config, samples: &Eight) -> Eight {
 }
 
 /// Columns of a fit, in this order, so that each candidate is a prefix: the constant and the pixels' axes, which follow
-/// the signal and correct nothing; the basis, degree by degree; and low-degree functions times each axis, for
+/// the signal and correct nothing; the basis, degree by degree; and those of degree 1 times each axis, for
 /// integrands that change across the block.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Terms {
@@ -64,14 +65,11 @@ impl Terms {
         }
         let samples = pixels.saturating_mul(call.n);
         let mut terms = Self { axes, functions, slices, copies, has_edges, ..Self::default() };
-        // As many degrees as leave two samples to each column.
-        for degree in 1..=MOVING_DEGREE.min(config.order.saturating_sub(1)).max(1) {
-            let moving = shape.up_to_degree(degree);
-            let columns = fixed + functions + slices * (1 + copies) + axes * (moving + slices);
-            if axes > 0 && columns <= MOST_COLUMNS && 2 * columns <= samples {
-                terms.moving = moving;
-                terms.has_slopes = slices > 0;
-            }
+        let moving = shape.up_to_degree(1);
+        let columns = fixed + functions + slices * (1 + copies) + axes * (moving + slices);
+        if axes > 0 && columns <= MOST_COLUMNS && SAMPLES_OF_COLUMN * columns < samples {
+            terms.moving = moving;
+            terms.has_slopes = slices > 0;
         }
         let (last, all_own) = (terms.columns(), terms.all_own());
         let mut end = |columns: usize, own: usize| {
