@@ -88,7 +88,7 @@ pub(super) struct Groups<'a> {
     records: &'a mut [f32],
     /// The groups' numbers, from the largest to the smallest.
     order: &'a mut [f32],
-    /// For each pixel of the list and each channel, what is added to the mean.
+    /// For each group and channel, what is added to the means of its pixels.
     pub(super) corrections: &'a mut [f32],
 }
 

@@ -217,7 +217,7 @@ impl Batch<'_> {
                 });
                 for (row, sum) in sum.iter().enumerate() {
                     for ((group, index), sum) in self.lanes.iter().zip(self.members((block, row))).zip(sum) {
-                        let at = (group.start + index as usize) * channels + channel;
+                        let at = group.start * channels + channel * group.len + index as usize;
                         if (index as usize) < group.len {
                             set(groups.corrections, at, *sum);
                         }

@@ -1,7 +1,7 @@
 //! From the corrections of groups to the pixels' estimates.
 
 use super::super::config::{Config, Estimate};
-use super::super::result::{mean_divisor, saturate, standard_error};
+use super::super::result::{mean_divisor, saturate};
 use super::call::Call;
 use super::groups::{Groups, Kind, Place};
 use super::products::*;
@@ -46,11 +46,12 @@ fn wide(a: &Eight) -> Wide {
     out
 }
 
-/// `f(a)` lane by lane, as an `f32`.
-fn narrow(a: &Wide, f: impl Fn(f64) -> f32) -> Eight {
+/// The nearest finite `f32`s.
+fn narrow(a: &Wide) -> Eight {
+    let limited = lanes::zip(a, &[f64::from(f32::MAX); LANES], |value, most| Real::max(Real::min(value, most), -most));
     let mut out = NONE;
     for l in 0..LANES {
-        out[l] = f(a[l]);
+        out[l] = limited[l] as f32;
     }
     out
 }
@@ -130,7 +131,7 @@ impl Call<'_> {
                 sums[2] = product(&near, &[*gain; LANES]);
                 let (_, each) = halves_mut(&mut sums, COMMON);
                 for (each, (channel, &error)) in each.as_chunks_mut().0.iter_mut().zip(errors.iter().enumerate()) {
-                    let mut both = [every(channels, from(corrections, begin * channels + channel)), [error; LANES]];
+                    let mut both = [every(1, from(corrections, channel * group.len + begin)), [error; LANES]];
                     if !self.image.factors.is_empty() {
                         self.times_factors(window, &places, begin, channel, &mut both);
                     }
@@ -210,7 +211,7 @@ impl Call<'_> {
         let (by_groups, likely) = (self.error_is_the_groups(), most_likely(self.n));
         // Without a weight all sums are zero.
         let [over, error_over] = [weight, error_weight].map(inverse);
-        let gain = narrow(&lanes::zip(&wide(gain), &over, |gain, over| gain * over), |gain| gain as f32);
+        let gain = narrow(&lanes::zip(&wide(gain), &over, |gain, over| gain * over));
         let mut gain = lanes::zip(&gain, weight, |gain, weight| if weight > 0.0 { gain } else { 1.0 });
         for (channel, [correction, spread]) in each.as_chunks().0.iter().enumerate() {
             let correction = lanes::zip(&wide(correction), &over, |correction, over| correction * over);
@@ -251,7 +252,10 @@ impl Call<'_> {
                 gain[l] = if is_corrected { gain[l] } else { 1.0 };
                 told[l] = if by_groups & has_error { spread[l] } else { told[l] };
             }
-            let (mean, error) = (narrow(&mean, saturate), narrow(&told, standard_error));
+            let (mean, mut error) = (narrow(&mean), narrow(&told));
+            for l in 0..LANES {
+                error[l] = if told[l] < f64::INFINITY { error[l] } else { f32::INFINITY };
+            }
             for l in 0..LANES {
                 let Estimate { mean: means, std_error: errors, .. } = &mut out[l];
                 (means[channel % means.len()], errors[channel % errors.len()]) = (mean[l], error[l]);
