@@ -2,6 +2,7 @@
 
 mod bounded;
 mod ending;
+mod jpeg;
 
 pub use ending::ending;
 
@@ -135,7 +136,12 @@ fn decode(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
         return Err(Error::Input(too_large(&path.to_string(), Some(decoder.dimensions()), Some(bytes))));
     }
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
-    let mut image = DynamicImage::from_decoder(decoder).map_err(failed)?;
+    let mut image = if format == ImageFormat::Jpeg {
+        jpeg::decode(bytes, decoder.dimensions(), decoder.color_type())
+            .map_err(|why| Error::Input(format!("{path} is a damaged {name} file: {why}")))?
+    } else {
+        DynamicImage::from_decoder(decoder).map_err(failed)?
+    };
     image.apply_orientation(orientation);
     Ok(image)
 }

@@ -8,6 +8,7 @@ mod cli_edges;
 mod cli_errors;
 mod cli_formats;
 mod cli_inputs;
+mod cli_jpeg;
 mod cli_names;
 mod cli_outputs;
 mod cli_pipes;
