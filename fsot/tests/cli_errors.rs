@@ -97,7 +97,21 @@ fn class_files_that_are_none() {
     place.write("box.json", r#"{"class": [{"name": "a", "function": {"box": {"from": 0.7, "to": 0.2}}}]}"#);
     place
         .write("picture.toml", "[[class]]\nname = \"a\"\nfunction = \"constant\"\ntarget = { image = \"none.png\" }\n");
+    for (name, function, target) in [
+        ("target", r#""constant""#, r#"{"image": "a.png", "invert": true}"#),
+        ("function", r#"{"tabulated": [1.0], "invert": true}"#, r#""uniform""#),
+    ] {
+        let text = format!(r#"{{"class": [{{"name": "a", "function": {function}, "target": {target}}}]}}"#);
+        place.write(&format!("{name}.json"), text);
+    }
+    place.write(
+        "target.toml",
+        "[[class]]\nname = \"a\"\nfunction = \"constant\"\ntarget = { image = \"a.png\", invert = true }\n",
+    );
     for (classes, message) in [
+        ("target.json", "there are `image` and `invert`, and one key is possible"),
+        ("function.json", "there are `invert` and `tabulated`, and one key is possible"),
+        ("target.toml", "there are `image` and `invert`, and one key is possible"),
         ("4color", "give 2color, 3color, ramp"),
         ("bad.toml", "bad.toml"),
         ("empty.toml", "empty.toml is empty"),

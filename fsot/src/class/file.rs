@@ -7,7 +7,9 @@ use crate::error::Result;
 use crate::export::points::words;
 use crate::read;
 use crate::target::{Target, Uniform};
-use serde::Deserialize;
+use serde::de::{DeserializeOwned, Error as _};
+use serde::{Deserialize, Deserializer};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -41,14 +43,25 @@ pub struct ClassEntry {
     #[serde(default = "one")]
     pub weight: f32,
     /// Its class function.
+    #[serde(deserialize_with = "one_key")]
     pub function: ClassFunction,
     /// Its target, uniform if not given.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "one_key")]
     pub target: TargetSpec,
 }
 
 fn one() -> f32 {
     1.0
+}
+
+/// A name, or a table of one key. Of more keys serde says nothing that helps.
+fn one_key<'de, D: Deserializer<'de>, T: DeserializeOwned>(deserializer: D) -> std::result::Result<T, D::Error> {
+    let value = Value::deserialize(deserializer)?;
+    if let Some(table) = value.as_object().filter(|table| table.len() > 1) {
+        let keys: Vec<String> = table.keys().map(|key| format!("`{key}`")).collect();
+        return Err(D::Error::custom(format!("there are {}, and one key is possible", keys.join(" and "))));
+    }
+    T::deserialize(value).map_err(D::Error::custom)
 }
 
 /// A target in a [`ClassFile`].
