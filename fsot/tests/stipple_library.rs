@@ -47,6 +47,19 @@ fn tones_and_colours_are_reproduced() {
     assert!(colour > 30.5, "{colour}");
 }
 
+/// Dots that cannot show the pixels of a picture show its tone: those of black squares are among white ones, and
+/// overlap as seldom as on grey.
+#[test]
+fn detail_finer_than_dots_keeps_its_tone() {
+    let photo = Photo::from_fn(100, 100, |x, y| [if (x + y) % 2 == 0 { 0.0 } else { 1.0 }; 3]);
+    for options in [options(600, 300), Options { invert: true, ..options(600, 300) }] {
+        let stipple = Stipple::new(&photo, &options).unwrap();
+        let drawn = rasterise(&stipple.drawing(&optimize(stipple.problem.clone()).unwrap()), 400.0).unwrap();
+        let mean = drawn.pixels().map(|pixel| f64::from(pixel.0[0])).sum::<f64>() / (400.0 * 400.0 * 255.0);
+        assert!((mean - 0.5).abs() < 0.02, "{mean}");
+    }
+}
+
 #[test]
 fn four_inks_make_fifteen_classes_of_the_right_points() {
     let photo = colours();
@@ -145,6 +158,20 @@ fn every_frame_shows_its_picture() {
             assert!(own > 15.5 && own > other + 6.0, "frame {number}: {own}, as another {other}");
         }
     }
+}
+
+#[test]
+fn longer_animations_take_more_steps() {
+    let photos: Vec<Photo> = (0..9).map(|k| frame(k as f32)).collect();
+    let steps = |frames: usize, cyclic: bool, quality: Quality| {
+        let windows = Windows { frames, window: 400, step: 100, cyclic };
+        let options = Options { quality, ..Options::new(0) };
+        Animation::new(&photos[..frames], windows, &options).unwrap().problem.quality
+    };
+    assert_eq!(steps(1, false, Quality::Standard), Quality::Iterations(4000));
+    assert_eq!(steps(9, false, Quality::Standard), Quality::Iterations(12_000));
+    assert_eq!(steps(8, true, Quality::Draft), Quality::Iterations(800));
+    assert_eq!(steps(9, false, Quality::Iterations(7)), Quality::Iterations(7));
 }
 
 #[test]

@@ -14,5 +14,6 @@ pub use photo::Photo;
 pub(crate) use photo::is_linear;
 pub use raster::{check_size, png, rasterise};
 pub(crate) use resample::resample;
+pub(crate) use score::blurred;
 pub use score::blurred_psnr;
 pub use vector::{hex, svg};

@@ -131,7 +131,7 @@ impl Animation {
                     photo.width, photo.height, first.width, first.height
                 )));
             }
-            let ink = inks(photo, options).map_err(at)?.remove(0);
+            let ink = inks(photo, options, windows.window).map_err(at)?.remove(0);
             let target = ImageTarget::new(photo.width, photo.height, &ink.density, windows.window).map_err(at)?;
             let target = Arc::new(target);
             let area = ink.density.iter().map(|d| f64::from(*d)).sum::<f64>() / ink.density.len() as f64;
@@ -148,7 +148,7 @@ impl Animation {
         let problem = Problem {
             classes,
             seed: options.seed,
-            quality: effort(options.quality),
+            quality: effort(options.quality, points as f64 / windows.window as f64),
             initial: Some(initial),
             ..Problem::new(points, 2)
         };

@@ -57,7 +57,7 @@ impl Stipple {
             return Err(Error::input("white ink does not go with cyan, magenta and yellow: leave out one of the two"));
         }
         check_points(options.points)?;
-        let inks = inks(photo, options)?;
+        let inks = inks(photo, options, options.points)?;
         let energies: Vec<f64> = inks.iter().map(|ink| ink.density.iter().map(|d| f64::from(*d)).sum()).collect();
         let counts = apportion(options.points, &energies);
         let mut targets = Vec::new();
@@ -74,7 +74,7 @@ impl Stipple {
             class_coordinates: ClassCoordinates::Index,
             domain: Domain::Bounded,
             seed: options.seed,
-            quality: effort(options.quality),
+            quality: effort(options.quality, 1.0),
             initial: Some(initial),
             ..Problem::new(options.points, 2)
         };

@@ -20,16 +20,19 @@ pub struct Options {
     pub grey_component: f32,
     /// Chooses all random numbers.
     pub seed: u64,
-    /// How long to optimise: draft, standard and high are 400, 4,000 and 16,000 iterations here.
+    /// How long to optimise: draft, standard and high are 400, 4,000 and 16,000 iterations here; of animations for each
+    /// window's number of points.
     pub quality: Quality,
 }
 
-/// Pictures gain from more iterations than even sets: small features are the last to settle.
-pub(super) fn effort(quality: Quality) -> Quality {
+/// Pictures gain from more iterations than even sets: small features are the last to settle. `sets` is how many times
+/// as many points there are as a slice moves at most: so many times as many slices move each as often.
+pub(super) fn effort(quality: Quality, sets: f64) -> Quality {
+    let steps = |base: f64| Quality::Iterations(libm::ceil(base * sets.max(1.0)) as u64);
     match quality {
-        Quality::Draft => Quality::Iterations(400),
-        Quality::Standard => Quality::Iterations(4000),
-        Quality::High => Quality::Iterations(16_000),
+        Quality::Draft => steps(400.0),
+        Quality::Standard => steps(4000.0),
+        Quality::High => steps(16_000.0),
         other => other,
     }
 }
@@ -70,8 +73,8 @@ pub(super) fn radius(ink_area: f64, extent: [f32; 2], dots: usize) -> f32 {
     (area / (dots as f64 * std::f64::consts::PI)).sqrt() as f32
 }
 
-/// The inks of a picture that has more than one tone.
-pub(super) fn inks(photo: &Photo, options: &Options) -> Result<Vec<Ink>> {
+/// The inks of a picture that has more than one tone, for so many dots.
+pub(super) fn inks(photo: &Photo, options: &Options, points: usize) -> Result<Vec<Ink>> {
     let all = |black: bool| {
         let end = if black { 0.0 } else { 1.0 };
         photo.pixels.iter().all(|rgb| rgb.iter().all(|value| (value - end).abs() < 0.5 / 255.0))
@@ -85,8 +88,8 @@ pub(super) fn inks(photo: &Photo, options: &Options) -> Result<Vec<Ink>> {
         }
     }
     Ok(if options.cmyk {
-        cmyk(photo, options.tone, options.grey_component)
+        cmyk(photo, options.tone, options.grey_component, points)
     } else {
-        grey(photo, options.tone, options.invert)
+        grey(photo, options.tone, options.invert, points)
     })
 }

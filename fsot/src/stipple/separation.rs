@@ -1,6 +1,6 @@
 //! From pictures to densities of ink.
 
-use crate::picture::{Photo, decode, luminance};
+use crate::picture::{Photo, blurred, decode, luminance};
 
 /// What "half as dark" means.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
@@ -66,46 +66,70 @@ pub fn ink_for(coverage: f32) -> f32 {
     }
 }
 
-/// Black dots, or white ones on black paper.
-pub fn grey(photo: &Photo, tone: Tone, invert: bool) -> Vec<Ink> {
-    let density = photo.pixels.iter().map(|rgb| {
+/// Black dots, or white ones on black paper; `points` of them.
+pub fn grey(photo: &Photo, tone: Tone, invert: bool, points: usize) -> Vec<Ink> {
+    let coverage = photo.pixels.iter().map(|rgb| {
         let light = luminance(rgb.map(|value| tone.value(value)));
-        ink_for(if invert { light } else { 1.0 - light })
+        if invert { light } else { 1.0 - light }
     });
+    let coverage: Vec<f32> = coverage.collect();
+    let radius = dot_radius(&coverage, points);
     let (name, colour) = if invert { ("w", [255; 3]) } else { ("k", [0; 3]) };
-    vec![Ink { name, colour, density: density.collect() }]
+    vec![Ink { name, colour, density: density(photo.width, photo.height, coverage, radius) }]
 }
 
-/// Cyan, magenta, yellow and black.
+/// Cyan, magenta, yellow and black; `points` of all together.
 ///
 /// Dots of different inks are spread evenly together, so they add up rather than fall on one another at random: cyan
 /// and black together cover what the picture lacks in red, magenta and black what it lacks in green, yellow and black
 /// what it lacks in blue. Black takes the part `grey_component`, in [0, 1], of what is common to all three.
-pub fn cmyk(photo: &Photo, tone: Tone, grey_component: f32) -> Vec<Ink> {
-    let mut inks = [("c", [0, 255, 255]), ("m", [255, 0, 255]), ("y", [255, 255, 0]), ("k", [0, 0, 0])]
-        .map(|(name, colour)| Ink { name, colour, density: Vec::with_capacity(photo.pixels.len()) });
-    for rgb in &photo.pixels {
-        let lack = rgb.map(|value| 1.0 - tone.value(value));
-        let common = lack[0].min(lack[1]).min(lack[2]);
-        let black = ink_for(common * grey_component.clamp(0.0, 1.0));
-        for (ink, lack) in inks.iter_mut().zip(lack) {
-            ink.density.push((ink_for(lack) - black).max(0.0));
-        }
-        inks[3].density.push(black);
-    }
-    inks.into()
+pub fn cmyk(photo: &Photo, tone: Tone, grey_component: f32, points: usize) -> Vec<Ink> {
+    let lacks = |channel: usize| photo.pixels.iter().map(move |rgb| 1.0 - tone.value(rgb[channel]));
+    let lack = [0, 1, 2].map(|channel| lacks(channel).collect::<Vec<f32>>());
+    let common = |pixel: usize| lack[0][pixel].min(lack[1][pixel]).min(lack[2][pixel]);
+    let part = grey_component.clamp(0.0, 1.0);
+    let black: Vec<f32> = (0..photo.pixels.len()).map(|pixel| common(pixel) * part).collect();
+    let all: Vec<f32> = (0..black.len()).map(|i| lack[0][i] + lack[1][i] + lack[2][i] - 2.0 * black[i]).collect();
+    let radius = dot_radius(&all, points);
+    let inked = |coverage| density(photo.width, photo.height, coverage, radius);
+    let black = inked(black);
+    let rest = |lack| inked(lack).into_iter().zip(&black).map(|(all, black)| (all - black).max(0.0)).collect();
+    let [cyan, magenta, yellow] = lack.map(rest);
+    vec![
+        Ink { name: "c", colour: [0, 255, 255], density: cyan },
+        Ink { name: "m", colour: [255, 0, 255], density: magenta },
+        Ink { name: "y", colour: [255, 255, 0], density: yellow },
+        Ink { name: "k", colour: [0; 3], density: black },
+    ]
+}
+
+/// The radius in pixels of so many dots that cover this together, did none overlap.
+fn dot_radius(coverage: &[f32], points: usize) -> f32 {
+    let area = coverage.iter().map(|part| f64::from(*part)).sum::<f64>();
+    (area / (points.max(1) as f64 * std::f64::consts::PI)).sqrt() as f32
+}
+
+/// Area of dots per area of paper for a coverage of each pixel. How much dots overlap depends on how many there are
+/// around, within a radius or so, and not on what is finer than they are.
+fn density(width: usize, height: usize, coverage: Vec<f32>, radius: f32) -> Vec<f32> {
+    let around = blurred(&coverage, width, height, radius);
+    let more = |around: f32| if around > 0.0 { ink_for(around) / around } else { 1.0 };
+    coverage.into_iter().zip(around).map(|(part, around)| part.max(0.0) * more(around)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// Dots far smaller than pixels, each of which then counts for itself.
+    const MANY: usize = 1 << 24;
+
     #[test]
     fn inks_add_up_to_what_each_primary_lacks() {
         let photo = Photo::from_fn(7, 9, |x, y| [x as f32 / 6.0, y as f32 / 8.0, 0.4]);
         for tone in [Tone::Encoded, Tone::Linear] {
             for grey_component in [0.0, 0.7, 1.0] {
-                let inks = cmyk(&photo, tone, grey_component);
+                let inks = cmyk(&photo, tone, grey_component, MANY);
                 for (pixel, rgb) in photo.pixels.iter().enumerate() {
                     for (ink, value) in inks[..3].iter().zip(rgb) {
                         let total = ink.density[pixel] + inks[3].density[pixel];
@@ -120,11 +144,41 @@ mod tests {
     }
 
     #[test]
+    fn dots_overlap_by_what_is_around_them() {
+        // Left of pixels one by one, right of halves.
+        let photo = Photo::from_fn(128, 128, |x, y| {
+            let dark = if x < 64 { (x + y) % 2 == 0 } else { y < 64 };
+            [if dark { 0.0 } else { 1.0 }; 3]
+        });
+        let mean = |density: &[f32], columns: std::ops::Range<usize>, rows: std::ops::Range<usize>| {
+            let of = |y: usize| density[y * 128..][columns.clone()].iter().sum::<f32>() / columns.len() as f32;
+            rows.clone().map(of).sum::<f32>() / rows.len() as f32
+        };
+        // Of a radius of a few pixels, or of many.
+        for points in [600, 20] {
+            for inks in [grey(&photo, Tone::Encoded, false, points), cmyk(&photo, Tone::Encoded, 0.7, points)] {
+                let black = &inks.last().unwrap().density;
+                let all = if inks.len() == 1 {
+                    black.clone()
+                } else {
+                    inks[0].density.iter().zip(black).map(|(cyan, black)| cyan + black).collect()
+                };
+                let fine = mean(&all, 4..36, 32..96);
+                assert!((fine - 0.5).abs() < 0.01, "{points}: {fine}");
+                if points == 600 {
+                    assert!((mean(&all, 80..120, 8..52) - ink_for(1.0)).abs() < 1e-3, "{points}");
+                    assert_eq!(mean(&all, 80..120, 76..120), 0.0);
+                }
+            }
+        }
+    }
+
+    #[test]
     fn white_paper_needs_no_ink_and_black_dots_are_for_dark_places() {
         let photo = Photo::from_fn(2, 1, |x, _| [1.0 - x as f32; 3]);
-        assert!(cmyk(&photo, Tone::Encoded, 1.0).iter().all(|ink| ink.density[0] == 0.0));
-        assert_eq!(grey(&photo, Tone::Encoded, false)[0].density, [0.0, ink_for(1.0)]);
-        assert_eq!(grey(&photo, Tone::Linear, true)[0].density, [ink_for(1.0), 0.0]);
+        assert!(cmyk(&photo, Tone::Encoded, 1.0, MANY).iter().all(|ink| ink.density[0] == 0.0));
+        assert_eq!(grey(&photo, Tone::Encoded, false, MANY)[0].density, [0.0, ink_for(1.0)]);
+        assert_eq!(grey(&photo, Tone::Linear, true, MANY)[0].density, [ink_for(1.0), 0.0]);
     }
 
     #[test]
