@@ -1,7 +1,7 @@
 //! `fsot stipple`: its files, and bad pictures.
 
 use crate::cli_support::Place;
-use image::{Rgb, RgbImage};
+use image::{ColorType, Rgb, RgbImage};
 
 /// A picture with colours, light and dark.
 fn picture() -> RgbImage {
@@ -22,6 +22,7 @@ fn a_picture_becomes_png_svg_and_points() {
     assert!(said.contains("blurred PSNR") && said.contains("sigma"), "{said}");
     let drawn = image::open(place.path("out.png")).unwrap();
     assert_eq!((drawn.width(), drawn.height()), (1024, 683));
+    assert_eq!(drawn.color(), ColorType::Rgb8);
     let text = String::from_utf8(place.read("out.svg")).unwrap();
     assert_eq!(text.matches("<circle").count(), 800);
     assert!(text.contains("multiply"));
@@ -29,6 +30,9 @@ fn a_picture_becomes_png_svg_and_points() {
     assert_eq!(table.points.len(), 800);
     assert!(table.classes.is_some_and(|labels| labels.names.iter().all(|name| "cmyk".contains(name.as_str()))));
     assert_eq!(place.names(), ["in.png", "out.csv", "out.png", "out.svg"]);
+    place.succeed("stipple in.png -n 80 --iterations 3 -o out.png --svg out.svg");
+    assert_eq!(image::open(place.path("out.png")).unwrap().color(), ColorType::L8);
+    assert!(!String::from_utf8(place.read("out.svg")).unwrap().contains("blend"));
 }
 
 #[test]

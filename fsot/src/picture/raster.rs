@@ -4,7 +4,7 @@ use super::colour::{decode, encode};
 use super::drawing::{Blend, Drawing, Shape};
 use crate::error::{Error, Result};
 use crate::memory;
-use image::{ExtendedColorType, ImageEncoder, RgbImage};
+use image::{ExtendedColorType, ImageEncoder, Rgb, RgbImage};
 use rayon::prelude::*;
 
 /// Lines per row of pixels on which a shape's extent is taken; along a line coverage is exact.
@@ -13,7 +13,8 @@ const LINES: usize = 16;
 const BAND: usize = 32;
 /// The most pixels of a picture.
 const MAX_PIXELS: f64 = 4e8;
-/// The memory of a pixel: drawn, in a file, expected in double precision, its difference, and two of that blurred.
+/// The memory of a pixel: drawn, in a file or as grey, expected in double precision, its difference, and two of that
+/// blurred.
 const PIXEL: u64 = 3 + 3 + 8 + 3 * 4;
 
 /// The pixels of a drawing of this size at `scale` pixels per unit, if there is memory to draw them and to say
@@ -80,15 +81,19 @@ pub fn rasterise(drawing: &Drawing, scale: f32) -> Result<RgbImage> {
     RgbImage::from_raw(width as u32, height as u32, bytes).ok_or_else(|| Error::input("the picture is too large"))
 }
 
-/// The content of a PNG file.
+/// The content of a PNG file, of one channel if there are no colours.
 ///
 /// # Errors
 ///
 /// [`Error::Input`] if it cannot be encoded.
 pub fn png(image: &RgbImage) -> Result<Vec<u8>> {
+    let is_grey = image.pixels().all(|Rgb([red, green, blue])| red == green && green == blue);
+    let grey: Vec<u8> = if is_grey { image.pixels().map(|pixel| pixel[0]).collect() } else { Vec::new() };
+    let (pixels, colour) =
+        if is_grey { (&grey, ExtendedColorType::L8) } else { (image.as_raw(), ExtendedColorType::Rgb8) };
     let mut bytes = Vec::new();
     image::codecs::png::PngEncoder::new(&mut bytes)
-        .write_image(image.as_raw(), image.width(), image.height(), ExtendedColorType::Rgb8)
+        .write_image(pixels, image.width(), image.height(), colour)
         .map_err(|error| Error::Input(format!("the picture cannot be encoded as PNG: {error}")))?;
     Ok(bytes)
 }

@@ -1,6 +1,6 @@
 //! Drawing to SVG.
 
-use super::drawing::{Blend, Colour, Drawing, Mark, Shape};
+use super::drawing::{BLACK, Blend, Colour, Drawing, Mark, Shape};
 use svg::Document;
 use svg::node::element::{Circle, Group, Polygon, Rectangle};
 
@@ -13,9 +13,11 @@ pub fn svg(drawing: &Drawing, scale: f32) -> String {
         .set("height", height.as_str())
         .set("viewBox", format!("0 0 {width} {height}"))
         .add(paper);
+    // Black over anything is black.
+    let blends = drawing.blend == Blend::Multiply && drawing.marks.iter().any(|mark| mark.colour != BLACK);
     for marks in drawing.marks.chunk_by(|a, b| a.colour == b.colour) {
         let mut group = Group::new().set("fill", hex(marks[0].colour));
-        if drawing.blend == Blend::Multiply {
+        if blends {
             group = group.set("style", "mix-blend-mode:multiply");
         }
         for mark in marks {
@@ -64,5 +66,8 @@ mod tests {
         assert!(text.contains("viewBox=\"0 0 100 50\"") && text.contains("mix-blend-mode:multiply"));
         assert!(text.contains("cx=\"25\"") && text.contains("cy=\"12.5\"") && text.contains("r=\"1\""), "{text}");
         assert!(text.contains("points=\"0,0 100,0 0,50\"") && text.contains("#010203"));
+
+        drawing.marks.iter_mut().for_each(|mark| mark.colour = BLACK);
+        assert!(!svg(&drawing, 100.0).contains("blend"));
     }
 }
