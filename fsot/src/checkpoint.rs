@@ -74,7 +74,8 @@ pub fn save(path: &Path, problem: &Problem, optimization: &dyn Optimization) -> 
         iteration: done,
         coordinates: coordinates.len() as u64,
     };
-    let header = serde_json::to_vec(&header).map_err(|error| Error::Io { path: path.into(), source: error.into() })?;
+    let header =
+        serde_json::to_vec(&header).map_err(|error| Error::Write { path: path.into(), source: error.into() })?;
     let mut bytes = Vec::with_capacity(MAGIC.len() + 4 + header.len() + 4 * coordinates.len() + DIGEST);
     bytes.extend_from_slice(MAGIC);
     bytes.extend_from_slice(&(header.len() as u32).to_le_bytes());

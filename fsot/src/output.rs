@@ -52,9 +52,9 @@ impl Outputs {
             self.pending.push(Pending::Stream { bytes: bytes.to_vec(), path: place });
             return Ok(());
         }
-        let mut file = temporary::create(&place).map_err(Error::io(path))?;
+        let mut file = temporary::create(&place).map_err(Error::write(path))?;
         // Synchronised, so that a full disk or quota is noticed before anything is replaced.
-        file.as_file_mut().write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(Error::io(path))?;
+        file.as_file_mut().write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(Error::write(path))?;
         self.pending.push(Pending::File { file, path: place });
         Ok(())
     }
@@ -70,9 +70,9 @@ impl Outputs {
         let _turn = files.first().and_then(|file| temporary::turn(folder(file.path()).to_owned()));
         for pending in streams.into_iter().chain(files) {
             match pending {
-                Pending::Stream { bytes, path } => write_stream(&path, &bytes).map_err(Error::io(path))?,
+                Pending::Stream { bytes, path } => write_stream(&path, &bytes).map_err(Error::write(path))?,
                 Pending::File { file, path } => {
-                    file.persist(&path).map_err(|error| Error::Io { path, source: error.error })?;
+                    file.persist(&path).map_err(|error| Error::Write { path, source: error.error })?;
                 }
             }
         }
@@ -106,7 +106,7 @@ pub fn check<'a, 'b>(
         let place = place(path)?;
         let stream = is_stream(&place);
         if stream {
-            check_stream(&place).map_err(Error::io(path))?;
+            check_stream(&place).map_err(Error::write(path))?;
         }
         if !stream && inputs.contains(&place) {
             return Err(Error::Input(format!(
@@ -126,7 +126,7 @@ pub fn check<'a, 'b>(
     }
     temporary::sweep(places.iter().map(|(_, place)| place.as_path()));
     for (path, place) in places {
-        temporary::create(&place).map_err(Error::io(path))?;
+        temporary::create(&place).map_err(Error::write(path))?;
     }
     Ok(())
 }

@@ -299,5 +299,5 @@ fn more_memory_than_there_is() {
 fn errors_name_the_file_that_was_asked_for() {
     let output = Place::new().run("points -n 9 --iterations 2 --out /proc/p.txt");
     assert_eq!(output.status.code(), Some(2));
-    assert_eq!(error(&output), "error: /proc/p.txt: No such file or directory (os error 2)\n");
+    assert_eq!(error(&output), "error: cannot write /proc/p.txt: No such file or directory (os error 2)\n");
 }

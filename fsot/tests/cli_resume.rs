@@ -4,7 +4,7 @@
 
 use crate::cli_support::{Place, error};
 use std::io::{BufRead, BufReader, Read};
-use std::process::{Child, Command};
+use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -166,4 +166,78 @@ fn runs_to_standard_output_have_states_of_their_own() {
     assert!(said.contains(&states()[0]), "{said}");
     let (_, said) = interrupt(&place, long, &states()[0], "INT");
     assert!(said.contains("continuing from fsot-"), "{said}");
+}
+
+#[test]
+fn another_number_of_steps_is_named() {
+    let place = Place::new();
+    let (code, message) = interrupt(
+        &place,
+        "points -n 600 --iterations 1000000 --checkpoint-every 0.02 --out out",
+        "out.checkpoint",
+        "INT",
+    );
+    assert_eq!(code, Some(130), "{message}");
+    place.refuse("points -n 600 --iterations 1 --out out", r#"quality: "1000000 steps" there, "1 step" here"#);
+    place.refuse("points -n 600 --out out", r#"quality: "1000000 steps" there, "standard" here"#);
+}
+
+/// In a folder where nobody can write.
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_needs_no_place_for_a_checkpoint() {
+    let output = Place::new().command("points -n 9 --iterations 2 --out -").current_dir("/proc").output().unwrap();
+    let said = error(&output);
+    assert!(output.status.success() && output.stdout.iter().filter(|byte| **byte == b'\n').count() == 9, "{said}");
+    assert!(said.contains("warning: no checkpoint can be saved: cannot write fsot-"), "{said}");
+    let named = "points -n 9 --iterations 2 --out - --checkpoint /proc/c";
+    let output = Place::new().run(named);
+    assert_eq!(output.status.code(), Some(2), "{named}");
+    assert!(error(&output).starts_with("error: cannot write /proc/c: "), "{}", error(&output));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_finished_run_outlives_a_full_disk() {
+    let place = Place::new();
+    let command = "points -n 64 --iterations 20 --checkpoint-every 0";
+    place.succeed(&format!("{command} --out p.txt"));
+    let expected = place.read("p.txt");
+
+    let output = place.run(&format!("{command} --out /dev/full --checkpoint state"));
+    let said = error(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    let saved = "/dev/full: No space left on device (os error 28). The finished run is saved in state: run the same";
+    assert!(said.contains(saved), "{said}");
+    std::fs::remove_file(place.path("p.txt")).unwrap();
+    let again = place.run(&format!("{command} --out p.txt --checkpoint state"));
+    assert!(again.status.success() && error(&again).contains("continuing from state at step 20"), "{}", error(&again));
+    assert!(place.read("p.txt") == expected);
+    assert_eq!(place.names(), ["p.txt"]);
+}
+
+#[test]
+fn a_finished_run_outlives_its_folder() {
+    let place = Place::new();
+    let [folder, temporary] = ["folder", "temporary"].map(|name| {
+        std::fs::create_dir(place.path(name)).unwrap();
+        place.path(name)
+    });
+    let command = "points -n 600 --iterations 4000 --checkpoint-every 0.02 --out folder/p.txt";
+    let mut child = place.command(command).env("TMPDIR", &temporary).stderr(Stdio::piped()).spawn().unwrap();
+    while !folder.join("p.txt.checkpoint").exists() {
+        assert!(child.try_wait().unwrap().is_none());
+        sleep(Duration::from_millis(2));
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+    let output = child.wait_with_output().unwrap();
+    let said = error(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    let saved: Vec<_> = std::fs::read_dir(&temporary).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let [saved] = &saved[..] else { panic!("{saved:?}\n{said}") };
+    assert!(said.contains(&format!("run the same command again with --checkpoint {}", saved.display())), "{said}");
+    std::fs::create_dir(&folder).unwrap();
+    let again = place.run(&format!("{command} --checkpoint {}", saved.display()));
+    assert!(again.status.success() && error(&again).contains("at step 4000"), "{}", error(&again));
+    assert!(!saved.exists() && folder.join("p.txt").exists());
 }

@@ -1,7 +1,9 @@
 //! What to optimise.
 
 use crate::class::{Class, ClassCoordinates, single};
+use crate::counted::counted;
 use crate::points::Points;
+use std::fmt;
 
 /// The shape of the domain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,6 +27,17 @@ pub enum Quality {
     High,
     /// As many iterations as it says; 0 leaves the initial points.
     Iterations(u64),
+}
+
+impl fmt::Display for Quality {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Quality::Draft => f.write_str("draft"),
+            Quality::Standard => f.write_str("standard"),
+            Quality::High => f.write_str("high"),
+            Quality::Iterations(steps) => f.write_str(&counted(*steps, "step")),
+        }
+    }
 }
 
 /// What to optimise.

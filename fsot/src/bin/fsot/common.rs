@@ -99,7 +99,7 @@ impl Report {
         }
         let mut stdout = std::io::stdout().lock();
         let written = writeln!(stdout, "{}", text.trim_end()).and_then(|()| stdout.flush());
-        written.map_err(Error::io(STANDARD_OUTPUT))
+        written.map_err(Error::write(STANDARD_OUTPUT))
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::common::Common;
 use crate::interrupt::Watch;
 use crate::process::status;
-use crate::say::say;
+use crate::say::{is_gone, say};
 use fsot::checkpoint::{self, Problem};
 use fsot::counted::counted;
 use fsot::error::{Error, Result};
@@ -15,6 +15,7 @@ use serde_json::{Value, json};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use tempfile::{Builder, TempPath};
 
 /// Steps are measured for this long before the cost is announced.
 const MEASURED: Duration = Duration::from_millis(250);
@@ -43,6 +44,18 @@ pub(crate) struct Run {
     checkpoint: PathBuf,
     /// Whether the checkpoint is this run's: continued from, or saved.
     saved: bool,
+    end: End,
+}
+
+/// Where the state after the last step is.
+#[derive(Debug)]
+enum End {
+    /// The run was short.
+    Unsaved,
+    Checkpoint,
+    /// Where the system has temporary files: the checkpoint could not be written. It is removed when it is dropped.
+    Spare(TempPath),
+    Failed,
 }
 
 impl Run {
@@ -54,7 +67,26 @@ impl Run {
         text.push_str(&format!("  {steps}{resumed} in {:.2} s{energy}\n", self.seconds));
     }
 
-    /// The same for a report in JSON.
+    /// Of an error after the last step, how the outputs are made without taking the steps again.
+    fn kept(&mut self, error: Error) -> Error {
+        let again = match &mut self.end {
+            _ if is_gone(&error) => return error,
+            End::Unsaved => return error,
+            End::Failed => "The finished run could not be saved either".to_owned(),
+            End::Checkpoint => format!(
+                "The finished run is saved in {}: run the same command again to write what it made",
+                self.checkpoint.display()
+            ),
+            End::Spare(path) => {
+                path.disable_cleanup(true);
+                let path = path.display();
+                format!("The finished run is saved in {path}: run the same command again with --checkpoint {path}")
+            }
+        };
+        Error::Input(format!("{error}. {again}"))
+    }
+
+    /// What [`describe`](Run::describe) says, for a report in JSON.
     pub(crate) fn json(&self) -> Value {
         json!({
             "iterations": self.iterations, "resumed_at": self.resumed_at, "seconds": self.seconds,
@@ -71,21 +103,24 @@ impl Run {
 pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serialize, common: &Common) -> Result<Run> {
     let problem = Problem::new(problem)?;
     let checkpoint = common.checkpoint(&problem);
-    if common.named_checkpoint().is_none() {
-        output::check([checkpoint.as_path()], [])?;
-    }
+    // One that was not asked for stops nothing.
+    let unnamed = || output::check([checkpoint.as_path()], []).err();
+    let unwritable = if common.named_checkpoint().is_none() { unnamed() } else { None };
     let resumed = checkpoint::resume(&checkpoint, &problem, optimization).map_err(|error| match error {
         Error::Input(why) => Error::Input(format!("{why}. Remove it to start anew, or name another with --checkpoint")),
         error => error,
     })?;
     let watch = Watch::start()?;
     let mut progress = Progress::new(common, &*optimization);
+    if let Some(error) = &unwritable {
+        progress.say(&format!("warning: no checkpoint can be saved: {error}; --checkpoint names another place"));
+    }
     if resumed {
         progress.say(&format!("continuing from {} at step {}", checkpoint.display(), optimization.iteration()));
     }
     let every = Duration::try_from_secs_f64(common.checkpoint_every).unwrap_or(Duration::MAX);
     let mut last = Instant::now();
-    let (mut saved, mut can_save) = (resumed, true);
+    let (mut saved, mut can_save) = (resumed, unwritable.is_none());
     loop {
         // After the last step, too: what follows may take long, and the same command begins there.
         if progress.unheard.is_some() || watch.stopped() {
@@ -110,9 +145,11 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
     }
     progress.clear();
     let seconds = progress.start.elapsed();
-    if can_save && (resumed || seconds >= WORTH_SAVING) {
+    let mut end = End::Unsaved;
+    if resumed || seconds >= WORTH_SAVING.min(every) {
         // A full disk is about to be reported by whoever writes the output.
-        saved |= checkpoint::save(&checkpoint, &problem, optimization).is_ok();
+        end = save_end(&checkpoint, &problem, optimization);
+        saved |= matches!(end, End::Checkpoint);
     }
     if watch.stopped() {
         return Err(leave(optimization, &checkpoint, &problem, None));
@@ -125,16 +162,33 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
         problem,
         checkpoint,
         saved,
+        end,
     })
 }
 
-/// Puts a command's outputs in place, then removes its run's checkpoint.
+/// Saves the state after the last step, if need be in another place.
+fn save_end(checkpoint: &Path, problem: &Problem, optimization: &dyn Optimization) -> End {
+    if checkpoint::save(checkpoint, problem, optimization).is_ok() {
+        return End::Checkpoint;
+    }
+    let spare = || {
+        let file = Builder::new().prefix("fsot-").suffix(".checkpoint").tempfile().ok()?.into_temp_path();
+        checkpoint::save(&file, problem, optimization).ok()?;
+        Some(file)
+    };
+    spare().map_or(End::Failed, End::Spare)
+}
+
+/// Adds a command's outputs and puts them in place, then removes its run's checkpoint.
 ///
 /// # Errors
-/// As [`Outputs::commit`]; [`Error::Stopped`] if Ctrl-C came meanwhile, with the outputs in place.
-pub(crate) fn finish(outputs: Outputs, run: &Run) -> Result<()> {
+/// As [`Outputs::add`] and [`Outputs::commit`], and where the finished run is saved; [`Error::Stopped`] if Ctrl-C came
+/// meanwhile, with the outputs in place.
+pub(crate) fn finish(run: &mut Run, add: impl FnOnce(&mut Outputs) -> Result<()>) -> Result<()> {
+    let mut outputs = Outputs::new();
+    add(&mut outputs).map_err(|error| run.kept(error))?;
     let watch = Watch::start()?;
-    outputs.commit()?;
+    outputs.commit().map_err(|error| run.kept(error))?;
     // Meanwhile another run may have saved its state under the same name.
     if run.saved {
         checkpoint::remove(&run.checkpoint, &run.problem);

@@ -97,7 +97,7 @@ fn failed(error: &Error) -> ExitCode {
 /// Prints what clap answers: help, the version or what is wrong with the arguments.
 fn print(answer: &clap::Error) -> ExitCode {
     match answer.print().and_then(|()| std::io::stdout().flush()) {
-        Err(error) if !answer.use_stderr() => failed(&Error::io(STANDARD_OUTPUT)(error)),
+        Err(error) if !answer.use_stderr() => failed(&Error::write(STANDARD_OUTPUT)(error)),
         _ => ExitCode::from(u8::try_from(answer.exit_code()).unwrap_or(FAILURE)),
     }
 }

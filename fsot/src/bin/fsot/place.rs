@@ -6,7 +6,7 @@ use crate::pictures::Pictures;
 use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::optimize::Optimizer;
-use fsot::output::{self, Outputs};
+use fsot::output;
 use fsot::picture::hex;
 use fsot::place::{Object, Options, Placement, colour_of, drawing};
 use fsot::read;
@@ -52,14 +52,11 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let mut optimizer = Optimizer::new(placement.problem.clone())?;
     let description = json!({
         "command": "place", "points": points, "colors": colours, "sizes": args.sizes, "map": map_digest, "seed": seed,
-        "quality": format!("{quality:?}"),
+        "quality": quality.to_string(),
     });
-    let run = drive(&mut optimizer, &description, &args.common)?;
+    let mut run = drive(&mut optimizer, &description, &args.common)?;
 
     let objects = placement.objects(&optimizer.points());
-    let mut outputs = Outputs::new();
-    outputs.add(&args.common.out, &format.encode(&objects, colours)?)?;
-    args.pictures.add(&mut outputs, PICTURE, || drawing(&objects, colours, placement.extent()))?;
     let classes = placement.problem.classes.len();
     let mut text = format!(
         "{}, {}{}: {}\n",
@@ -72,7 +69,10 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let json = json!({
         "objects": points, "colors": colours, "sizes": args.sizes, "classes": classes, "run": run.json(),
     });
-    finish(outputs, &run)?;
+    finish(&mut run, |outputs| {
+        outputs.add(&args.common.out, &format.encode(&objects, colours)?)?;
+        args.pictures.add(outputs, PICTURE, || drawing(&objects, colours, placement.extent()))
+    })?;
     args.common.print(args.pictures.paths(), &text, &json)
 }
 

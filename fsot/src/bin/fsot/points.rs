@@ -14,7 +14,6 @@ use fsot::digest::digest;
 use fsot::error::{Error, Result};
 use fsot::export::points::{Format, Table, encode};
 use fsot::optimize::{Domain, Optimizer, Problem};
-use fsot::output::Outputs;
 use fsot::picture::{BLACK, Colour, Drawing};
 use fsot::read;
 use fsot::target::Target;
@@ -89,14 +88,14 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     if let Some(file) = args.classes.as_deref().filter(|name| preset(name, 1).is_none()) {
         classes.check().map_err(in_file(Path::new(file)))?;
     }
-    let run = drive(&mut optimizer, &description, &args.common)?;
+    let mut run = drive(&mut optimizer, &description, &args.common)?;
 
     let table = Table { points: optimizer.points(), classes: classes.labels() };
     drop(optimizer);
-    let mut outputs = Outputs::new();
-    outputs.add(&args.common.out, &encode(&table, Format::of(&args.common.out))?)?;
-    args.pictures.add(&mut outputs, PICTURE, || draw(&table, extent))?;
-    finish(outputs, &run)?;
+    finish(&mut run, |outputs| {
+        outputs.add(&args.common.out, &encode(&table, Format::of(&args.common.out))?)?;
+        args.pictures.add(outputs, PICTURE, || draw(&table, extent))
+    })?;
     if args.common.is_silent() {
         return Ok(());
     }
@@ -174,7 +173,7 @@ fn problem(args: &Args) -> Result<(Problem, Value, [f32; 2])> {
         "command": "points", "points": points, "dims": dims, "toroidal": args.toroidal,
         "axis-priority": args.axis_priority, "progressive": args.progressive, "classes": args.classes,
         "density": args.density.is_some(), "invert": args.invert, "files": files, "seed": common.seed(),
-        "quality": format!("{:?}", common.effort()),
+        "quality": common.effort().to_string(),
     });
     Ok((problem, description, extent))
 }

@@ -5,7 +5,7 @@ use crate::drive::{drive, finish};
 use crate::names;
 use fsot::error::Result;
 use fsot::export::sidecar;
-use fsot::output::{self, Outputs};
+use fsot::output;
 use fsot::sampler::problem::{OCTAVES, iterations};
 use fsot::sampler::sidecar::SamplerOctave;
 use fsot::sampler::{SamplerOptimizer, SamplerProblem, SamplerSidecar};
@@ -66,14 +66,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     beside.iter().try_for_each(|path| sidecar::check::<SamplerSidecar>(path))?;
     let problem = problem(args)?;
     let mut optimizer = SamplerOptimizer::new(problem.clone())?;
-    let run = drive(&mut optimizer, &json!({ "command": "sampler", "sampler": problem }), &args.common)?;
+    let mut run = drive(&mut optimizer, &json!({ "command": "sampler", "sampler": problem }), &args.common)?;
     let (table, report) = (optimizer.table(), optimizer.measure());
-    let mut outputs = Outputs::new();
-    outputs.add(out, &table.bytes())?;
-    if let Some(path) = &beside {
-        let sidecar = SamplerSidecar::new(command(args, &problem), &problem, &table, &report);
-        outputs.add(path, &sidecar::encode(&sidecar)?)?;
-    }
     let octaves = SamplerOctave::all(&report);
     let mut text = format!("{}\n", out.display());
     run.describe(&mut text);
@@ -82,7 +76,12 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         writeln!(text, "  {spp:>3}  {filtered:8.4}  {raw:6.4}  {least:.2} to {most:.2}").unwrap_or(());
     }
     let json = json!({ "out": out.to_string_lossy(), "run": run.json(), "octaves": octaves });
-    finish(outputs, &run)?;
+    finish(&mut run, |outputs| {
+        outputs.add(out, &table.bytes())?;
+        let Some(path) = &beside else { return Ok(()) };
+        let sidecar = SamplerSidecar::new(command(args, &problem), &problem, &table, &report);
+        outputs.add(path, &sidecar::encode(&sidecar)?)
+    })?;
     args.common.print([], &text, &json)
 }
 

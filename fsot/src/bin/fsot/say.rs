@@ -18,18 +18,25 @@ pub(crate) const STANDARD_OUTPUT: &str = "standard output";
 pub(crate) fn say(line: &str) -> Result<()> {
     // As one piece, so that the lines of two programs do not mix.
     match std::io::stderr().lock().write_all(format!("{line}\n").as_bytes()) {
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Err(Error::io("standard error")(error)),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Err(Error::write("standard error")(error)),
         _ => Ok(()),
+    }
+}
+
+/// The output whose reader has gone, if that is the error.
+fn gone(error: &Error) -> Option<&Path> {
+    match error {
+        Error::Write { path, source } if source.kind() == ErrorKind::BrokenPipe => Some(path),
+        _ => None,
     }
 }
 
 /// Whether an error is that the reader of an output has gone.
 pub(crate) fn is_gone(error: &Error) -> bool {
-    matches!(error, Error::Io { source, .. } if source.kind() == ErrorKind::BrokenPipe)
+    gone(error).is_some()
 }
 
 /// Whether it is that a program such as `head` has read all that it wants of standard output: nothing is said of that.
 pub(crate) fn is_cut(error: &Error) -> bool {
-    let standard = |path: &Path| path == Path::new(STANDARD_OUTPUT) || path == "-" || path == "/dev/stdout";
-    is_gone(error) && matches!(error, Error::Io { path, .. } if standard(path))
+    gone(error).is_some_and(|path| [STANDARD_OUTPUT, "-", "/dev/stdout"].iter().any(|name| path == Path::new(name)))
 }

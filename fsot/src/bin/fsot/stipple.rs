@@ -12,7 +12,6 @@ use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::export::points::Table;
 use fsot::optimize::Optimizer;
-use fsot::output::Outputs;
 use fsot::picture::{blurred_psnr, check_size, png, rasterise};
 use fsot::read;
 use fsot::stipple::Stipple;
@@ -39,18 +38,18 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
     let size = args.size(stipple.spacing());
     check_size(photo.extent(), size as f32)?;
     let mut optimizer = Optimizer::new(stipple.problem.clone())?;
-    let run = drive(&mut optimizer, &args.description(&[digest], &options), &args.common)?;
+    let mut run = drive(&mut optimizer, &args.description(&[digest], &options), &args.common)?;
 
     let points = optimizer.points();
     drop(optimizer);
     let drawing = stipple.drawing(&points);
     let drawn = rasterise(&drawing, size as f32)?;
-    let mut outputs = Outputs::new();
-    let picture = if format == Picture::Png { png(&drawn)? } else { format.encode(&drawing, size)? };
-    outputs.add(&args.common.out, &picture)?;
     let table = Table { points, classes: Some(stipple.labels()) };
-    args.copies.add(&mut outputs, &drawing, size, &table)?;
-    finish(outputs, &run)?;
+    finish(&mut run, |outputs| {
+        let picture = if format == Picture::Png { png(&drawn)? } else { format.encode(&drawing, size)? };
+        outputs.add(&args.common.out, &picture)?;
+        args.copies.add(outputs, &drawing, size, &table)
+    })?;
     if args.common.is_silent() {
         return Ok(());
     }

@@ -8,7 +8,7 @@ use fsot::error::{Error, Result};
 use fsot::export::nft::{self, TileFile};
 use fsot::export::sidecar::{self, Quality, Sidecar};
 use fsot::metrics::{TileOptions, TileReport, TileView, measure_tile};
-use fsot::output::{self, Outputs};
+use fsot::output;
 use fsot::tile::{self, ClassShare, Kernel, TemporalKernel, TileOptimizer, TileProblem, preset};
 use noisefloor::tile::{Builtin, Shape};
 use serde_json::{Value, json};
@@ -91,15 +91,16 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     // Refuses what a tile's file cannot hold before the work.
     nft::header(shape, problem.seed, &kernel)?;
     let mut optimizer = TileOptimizer::new(problem.clone())?;
-    let run = drive(&mut optimizer, &json!({ "command": "tile", "tile": problem }), &args.common)?;
+    let mut run = drive(&mut optimizer, &json!({ "command": "tile", "tile": problem }), &args.common)?;
 
     let samples = optimizer.samples();
     let file = TileFile::new(shape, problem.seed, &kernel, &samples.coordinates)?;
     // What is stored is measured, after rounding.
     let report = measure(&file, &problem, args.integrands as usize)?;
-    let mut outputs = Outputs::new();
-    outputs.add(out, file.bytes())?;
-    if let Some(path) = &sidecar {
+    let (text, json) = describe(out, &report, &run);
+    finish(&mut run, |outputs| {
+        outputs.add(out, file.bytes())?;
+        let Some(path) = &sidecar else { return Ok(()) };
         let sidecar = Sidecar {
             command: command(args, &problem),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -109,10 +110,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
             sha256: digest(file.bytes()),
             quality: Quality::new(&report),
         };
-        outputs.add(path, &sidecar::encode(&sidecar)?)?;
-    }
-    let (text, json) = describe(out, &report, &run);
-    finish(outputs, &run)?;
+        outputs.add(path, &sidecar::encode(&sidecar)?)
+    })?;
     args.common.print([], &text, &json)
 }
 

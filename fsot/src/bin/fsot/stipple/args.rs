@@ -129,7 +129,7 @@ impl Args {
             "step": self.step,
             "cyclic": self.cyclic,
             "seed": options.seed,
-            "quality": format!("{:?}", options.quality),
+            "quality": options.quality.to_string(),
         })
     }
 }

@@ -6,7 +6,6 @@ use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::export::points::Table;
 use fsot::optimize::Optimizer;
-use fsot::output::Outputs;
 use fsot::picture::{Photo, blurred_psnr, check_size, rasterise};
 use fsot::read;
 use fsot::stipple::{Animation, Windows};
@@ -52,19 +51,19 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     let size = args.size(animation.spacing());
     photos.iter().try_for_each(|photo| check_size(photo.extent(), size as f32).map(|_| ()))?;
     let mut optimizer = Optimizer::new(animation.problem.clone())?;
-    let run = drive(&mut optimizer, &args.description(&digests, &options), &args.common)?;
+    let mut run = drive(&mut optimizer, &args.description(&digests, &options), &args.common)?;
 
     let points = optimizer.points();
     drop(optimizer);
-    let mut outputs = Outputs::new();
-    for (frame, path) in outs.iter().enumerate() {
-        outputs.add(path, &format.encode(&animation.frame(&points, frame), size)?)?;
-    }
-    let all = animation.all(&points);
-    outputs.add(&args.common.out, &format.encode(&all, size)?)?;
     let table = Table { points, classes: None };
-    args.copies.add(&mut outputs, &all, size, &table)?;
-    finish(outputs, &run)?;
+    finish(&mut run, |outputs| {
+        for (frame, path) in outs.iter().enumerate() {
+            outputs.add(path, &format.encode(&animation.frame(&table.points, frame), size)?)?;
+        }
+        let all = animation.all(&table.points);
+        outputs.add(&args.common.out, &format.encode(&all, size)?)?;
+        args.copies.add(outputs, &all, size, &table)
+    })?;
     if args.common.is_silent() {
         return Ok(());
     }
