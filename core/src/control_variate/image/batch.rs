@@ -226,9 +226,9 @@ impl<'a> Batch<'a> {
                     numbers[l] = if one[l] > 0.0 { numbers[l] } else { other };
                 }
                 let pixels = numbers.map(|number| (number & Image::MAX_PIXELS) as usize);
-                for channel in 0..channels {
+                for (channel, range) in call.ranges(&pixels).iter().enumerate().take(channels) {
                     let entry = self.entry(channel, (block, row));
-                    set(self.ranges, entry, call.range(&pixels, channel).map(|value| only(&one, &value)));
+                    set(self.ranges, entry, range.map(|value| only(&one, &value)));
                 }
                 if let (Some(out), Some(inside)) = (self.numbers.get_mut(block), self.inside.get_mut(block)) {
                     (out[row], inside[row]) = (pixels.map(|pixel| f32::from_bits(pixel as u32)), one);

@@ -3,6 +3,8 @@
 use super::batch::Batch;
 use super::call::Call;
 use super::products::*;
+use crate::control_variate::Config;
+use core::array::from_fn;
 use core::ops::Range;
 
 /// A column of some rows of `WIDTH` numbers, for each lane from where its rows start.
@@ -18,10 +20,42 @@ fn put_column<const WIDTH: usize>(rows: &[f32], starts: &[usize; LANES], column:
     }
 }
 
+/// One of some rows of `WIDTH` numbers for each lane, a column for each number.
+fn put_row<const WIDTH: usize>(rows: &[f32], which: &[usize; LANES], out: &mut [Eight]) {
+    let (rows, _) = rows.as_chunks::<WIDTH>();
+    for (lane, &row) in which.iter().enumerate() {
+        for (out, value) in out.iter_mut().zip(rows.get(row).into_iter().flatten()) {
+            out[lane % LANES] = *value;
+        }
+    }
+}
+
 impl Call<'_> {
-    /// The pixels' lowest and highest values, as fits see them.
-    pub(super) fn range(&self, pixels: &[usize; LANES], channel: usize) -> [Eight; 2] {
+    /// The pixels' lowest and highest values of each channel, as fits see them.
+    pub(super) fn ranges(&self, pixels: &[usize; LANES]) -> [[Eight; 2]; Config::MAX_CHANNELS] {
+        if self.n > 1 {
+            return from_fn(|channel| self.range(pixels, channel));
+        }
+        let mut values = [NONE; Config::MAX_CHANNELS];
+        let (f, first) = (self.reader.samples.f, pixels.map(|pixel| pixel * self.held));
+        match self.config.channels {
+            1 => put_row::<1>(f, &first, &mut values),
+            2 => put_row::<2>(f, &first, &mut values),
+            3 => put_row::<3>(f, &first, &mut values),
+            _ => put_row::<4>(f, &first, &mut values),
+        }
+        for (channel, values) in values.iter_mut().enumerate() {
+            self.divide_by_factors(pixels, channel, values);
+        }
+        values.map(|values| [values; 2])
+    }
+
+    /// The same of a channel, of several samples; of a channel that there is not nothing.
+    fn range(&self, pixels: &[usize; LANES], channel: usize) -> [Eight; 2] {
         let (mut low, mut high) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
+        if channel >= self.config.channels {
+            return [low, high];
+        }
         for begin in (0..self.n).step_by(AT_ONCE) {
             let mut four = [NONE; AT_ONCE];
             let values = first_mut(&mut four, AT_ONCE.min(self.n - begin));

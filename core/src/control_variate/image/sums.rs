@@ -67,11 +67,34 @@ fn hat(place: u32, over_extent: f32) -> f32 {
 }
 
 /// Eight numbers, each so many after the one before; 0 where there is none.
+#[inline(always)]
 fn every(step: usize, numbers: &[f32]) -> Eight {
-    match numbers.first_chunk() {
-        // One instruction, instead of eight and as many addresses.
-        Some(next) if step == 1 => *next,
-        _ => core::array::from_fn(|lane| at(numbers, lane * step)),
+    fn of<const STEP: usize>(numbers: &[f32]) -> Option<Eight> {
+        Some(numbers.as_chunks::<STEP>().0.first_chunk::<LANES>()?.map(|row| row[0]))
+    }
+    // Without a look for each whether it is there.
+    let all = match step {
+        1 => of::<1>(numbers),
+        2 => of::<2>(numbers),
+        3 => of::<3>(numbers),
+        4 => of::<4>(numbers),
+        _ => None,
+    };
+    all.unwrap_or_else(|| core::array::from_fn(|lane| at(numbers, lane * step)))
+}
+
+/// Adds the first `count` lanes to the sums of the pixels that are at `spots`.
+#[inline(always)]
+fn scatter<const LEN: usize>(band: &mut [Eight], spots: [u32; LANES], sums: &[Eight], count: usize) {
+    let Some(sums) = sums.first_chunk::<LEN>() else { return };
+    let begins = spots.map(|spot| spot / LANES as u32 * LEN as u32);
+    for lane in 0..count.min(LANES) {
+        let out = band.get_mut(begins[lane] as usize..);
+        let Some(out) = out.and_then(|out| out.first_chunk_mut::<LEN>()) else { return };
+        let spot = spots[lane] as usize % LANES;
+        for (out, sum) in out.iter_mut().zip(sums) {
+            out[spot] += sum[lane];
+        }
     }
 }
 
@@ -94,8 +117,6 @@ impl Call<'_> {
     #[inline(always)]
     pub(super) fn add(&self, groups: &Groups<'_>, band: &mut Band<'_>) {
         let channels = self.config.channels;
-        let len = sums_len(channels);
-        const LEAST: usize = sums_len(1);
         let [rows, width] = [band.rows, self.eights() * LANES].map(|extent| extent as u32);
         let [across, down, _] = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
         let all = self.fits_without_edges();
@@ -142,21 +163,12 @@ impl Call<'_> {
                         })
                     });
                 }
-                // Those of one channel without a loop.
-                let Some((least, others)) = first(&sums, len).split_first_chunk::<LEAST>() else { return };
-                let begins = spots.map(|spot| spot / LANES as u32 * len as u32);
-                for lane in 0..LANES.min(group.len - begin) {
-                    let (spot, lane) = (spots[lane % LANES] as usize % LANES, lane % LANES);
-                    let out = band.sums.get_mut(begins[lane] as usize..);
-                    let Some((out, more)) = out.and_then(|out| out.split_first_chunk_mut::<LEAST>()) else { break };
-                    for (out, sum) in out.iter_mut().zip(least) {
-                        out[spot] += sum[lane];
-                    }
-                    if channels > 1 {
-                        for (out, sum) in more.iter_mut().zip(others) {
-                            out[spot] += sum[lane];
-                        }
-                    }
+                let (sums, count) = (&sums, group.len - begin);
+                match channels {
+                    1 => scatter::<{ sums_len(1) }>(band.sums, spots, sums, count),
+                    2 => scatter::<{ sums_len(2) }>(band.sums, spots, sums, count),
+                    3 => scatter::<{ sums_len(3) }>(band.sums, spots, sums, count),
+                    _ => scatter::<{ sums_len(4) }>(band.sums, spots, sums, count),
                 }
             }
         }
@@ -269,7 +281,8 @@ impl Call<'_> {
     /// A channel of a sample of each pixel, as it was given; 0 of those that are not there.
     fn given(&self, (pixel, there): (usize, usize), sample: usize, channel: usize) -> Wide {
         let (channels, step) = (self.config.channels, self.held * self.config.channels);
-        let begin = (pixel * self.held + sample) * channels + channel;
-        wide(&every(step, part(self.reader.samples.f, begin, (there.max(1) - 1) * step + 1)))
+        let numbers = from(self.reader.samples.f, (pixel * self.held + sample) * channels + channel);
+        let all = if there == LANES { numbers } else { first(numbers, (there.max(1) - 1) * step + 1) };
+        wide(&every(step, all))
     }
 }
