@@ -37,7 +37,7 @@ pub struct nf_recommendation {
     /// The same of the image filtered by a Gaussian of 2.1 pixels.
     pub filtered_error: f32,
     /// Nanoseconds that the method takes for each sample on the machine of the report: of NF_METHOD_SHARED three
-    /// channels in windows of image_stride (overlapping ones take three times as long as others), else one channel.
+    /// channels in windows of image_stride (overlapping ones take two to three times as long), else one channel.
     pub cost: f32,
     /// The cost of a sample, in nanoseconds, below which more samples of the plain mean lower the error further in the
     /// same time: for overlapping windows twice that of others. Infinite if no fit pays at any cost.

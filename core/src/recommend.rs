@@ -61,7 +61,7 @@ pub struct Recommendation {
     /// The same of the image filtered by a Gaussian of 2.1 pixels.
     pub filtered_error: f32,
     /// Nanoseconds that the method takes for each sample on the machine of the report: of [`Method::Shared`] three
-    /// channels in windows of `image_stride` (overlapping ones take three times as long as others), else one channel.
+    /// channels in windows of `image_stride` (overlapping ones take two to three times as long), else one channel.
     pub cost: f32,
     /// The cost of a sample, in nanoseconds, below which more samples of the plain mean lower the error further in the
     /// same time: for overlapping windows twice that of others. Infinite if no fit pays at any cost.
@@ -178,16 +178,16 @@ impl Cell {
     /// What it takes for each sample, and the cost of a sample from which it pays, in nanoseconds.
     ///
     /// Shared fits of 2 dims in rendered frames of three channels, with surfaces, in windows side by side (those that
-    /// overlap take three times as long, and pay from twice as much on): medians of eight scenes, if more samples lower
+    /// overlap take two to three times as long, and pay from twice as much on): medians of eight scenes, if more samples lower
     /// the mean's squared error as 1 / N, of stratified ones as 1 / N^1.5. Other dims by their cost. Of one
     /// pixel's fits: they leave .78 in those frames.
     fn time(&self, sampling: Sampling, samples: usize) -> (f32, f32) {
         // A pixel of 2 or 3 samples takes as long as one of 4, and gains what lies between it and one of 1.
         let longer_by = (4.0 / samples as f32).max(1.0);
         let (unit, cost, independent, stratified) = match samples {
-            ..2 => (164.0, 338.0, 2140.0, 3010.0),
-            2..16 => (83.0, 231.0 * longer_by, 1450.0 * longer_by, 7350.0),
-            _ => (45.0, 87.0, 445.0, 56800.0),
+            ..2 => (164.0, 246.0, 1710.0, 2830.0),
+            2..16 => (83.0, 185.0 * longer_by, 1160.0 * longer_by, 5140.0),
+            _ => (45.0, 78.0, 338.0, 43800.0),
         };
         let scale = self.cost / unit;
         let (longer, later) = if self.image_stride == 4 { (3.0, 2.0) } else { (1.0, 1.0) };
