@@ -178,9 +178,9 @@ impl Cell {
     /// What it takes for each sample, and the cost of a sample from which it pays, in nanoseconds.
     ///
     /// Shared fits of 2 dims in rendered frames of three channels, with surfaces, in windows side by side (those that
-    /// overlap take two to three times as long, and pay from twice as much on): medians of eight scenes, if more samples lower
-    /// the mean's squared error as 1 / N, of stratified ones as 1 / N^1.5. Other dims by their cost. Of one
-    /// pixel's fits: they leave .78 in those frames.
+    /// overlap take two to three times as long, and pay from twice as much on): medians of eight scenes, if more
+    /// samples lower the mean's squared error as 1 / N, of stratified ones as 1 / N^1.5. Other dims by their cost. Of
+    /// one pixel's fits: they leave .78 in those frames.
     fn time(&self, sampling: Sampling, samples: usize) -> (f32, f32) {
         // A pixel of 2 or 3 samples takes as long as one of 4, and gains what lies between it and one of 1.
         let longer_by = (4.0 / samples as f32).max(1.0);
