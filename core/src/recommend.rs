@@ -185,9 +185,9 @@ impl Cell {
         // A pixel of 2 or 3 samples takes as long as one of 4, and gains what lies between it and one of 1.
         let longer_by = (4.0 / samples as f32).max(1.0);
         let (unit, cost, independent, stratified) = match samples {
-            ..2 => (164.0, 246.0, 1710.0, 2830.0),
-            2..16 => (83.0, 185.0 * longer_by, 1160.0 * longer_by, 5140.0),
-            _ => (45.0, 78.0, 338.0, 43800.0),
+            ..2 => (56.0, 246.0, 1710.0, 2830.0),
+            2..16 => (30.0, 185.0 * longer_by, 1160.0 * longer_by, 5140.0),
+            _ => (15.0, 78.0, 339.0, 46900.0),
         };
         let scale = self.cost / unit;
         let (longer, later) = if self.image_stride == 4 { (3.0, 2.0) } else { (1.0, 1.0) };
@@ -222,18 +222,18 @@ const INDEPENDENT_ALONE: Table<Cell> = [
 /// Independent samples of an image.
 #[rustfmt::skip]
 const INDEPENDENT_SHARED: Table<Cell> = [
-    [blocks(5, 136, 0.035, 0.06),   blocks(5, 60, 0.033, 0.056),   blocks(5, 33, 0.037, 0.064),
+    [blocks(5, 60, 0.035, 0.06),    blocks(5, 26, 0.033, 0.056),   blocks(5, 15, 0.037, 0.064),
      pixel(7, 69, 0.00036, 0.003),  pixel(7, 52, 0.0001, 0.00086)],
-    [blocks(3, 164, 0.13, 0.17),    blocks(3, 83, 0.11, 0.14),     blocks(3, 45, 0.12, 0.15),
+    [blocks(3, 56, 0.13, 0.17),     blocks(3, 30, 0.11, 0.14),     blocks(3, 15, 0.12, 0.15),
      pixel(5, 237, 0.025, 0.042),   pixel(5, 169, 0.011, 0.016)],
-    [blocks(3, 261, 0.22, 0.26),    blocks(3, 362, 0.15, 0.18),    blocks(3, 183, 0.14, 0.18),
+    [blocks(3, 123, 0.22, 0.26),    blocks(3, 126, 0.15, 0.18),    blocks(3, 60, 0.14, 0.18),
      pixel(3, 547, 0.16, 0.21),     pixel(3, 370, 0.079, 0.11)],
-    [blocks(2, 170, 0.3, 0.31),     blocks(2, 135, 0.23, 0.24),    blocks(2, 75, 0.23, 0.25),
+    [blocks(2, 80, 0.3, 0.31),      blocks(2, 71, 0.23, 0.24),     blocks(2, 36, 0.23, 0.25),
      pixel(2, 240, 0.24, 0.29),     pixel(3, 817, 0.094, 0.14)],
-    [blocks(2, 341, 0.39, 0.39),    blocks(2, 351, 0.28, 0.29),    blocks(2, 181, 0.27, 0.28),
-     blocks(2, 138, 0.29, 0.3),     pixel(2, 557, 0.21, 0.22)],
-    [blocks(1, 150, 0.58, 0.57),    blocks(1, 220, 0.51, 0.51),    blocks(1, 118, 0.52, 0.58),
-     blocks(1, 92, 0.54, 0.56),     pixel(1, 133, 0.47, 0.33)],
+    [blocks(2, 163, 0.39, 0.39),    blocks(2, 207, 0.28, 0.29),    blocks(2, 91, 0.27, 0.28),
+     blocks(2, 62, 0.29, 0.3),      pixel(2, 557, 0.21, 0.22)],
+    [blocks(1, 73, 0.58, 0.57),     blocks(1, 96, 0.51, 0.51),     blocks(1, 44, 0.52, 0.58),
+     blocks(1, 31, 0.54, 0.56),     pixel(1, 133, 0.47, 0.33)],
 ];
 
 /// The plain mean of stratified samples of one pixel: leave-one-out errors do not see strata, and a fit may be many
@@ -253,17 +253,17 @@ const STRATIFIED_ALONE: Table<(f32, f32)> = [
 /// which were not rendered, are taken to be alike.
 #[rustfmt::skip]
 const STRATIFIED_SHARED: Table<Cell> = [
-    [blocks(5, 136, 0.034, 0.03),   blocks(5, 59, 0.019, 0.0096),  blocks(5, 33, 0.011, 0.0038),
+    [blocks(5, 60, 0.034, 0.03),    blocks(5, 26, 0.019, 0.0096),  blocks(5, 15, 0.011, 0.0038),
      plain(0.0017, 0.0024),         plain(0.00018, 0.00027)],
-    [blocks(3, 164, 0.13, 0.048),   blocks(3, 82, 0.079, 0.011),   windows(3, 45, 0.032, 0.0028),
+    [blocks(3, 56, 0.13, 0.048),    blocks(3, 30, 0.079, 0.011),   windows(3, 15, 0.032, 0.0028),
      plain(0.009, 0.012),           plain(0.0016, 0.0022)],
-    [blocks(2, 180, 0.25, 0.096),   blocks(2, 98, 0.19, 0.028),    blocks(3, 182, 0.073, 0.051),
+    [blocks(2, 66, 0.25, 0.096),    blocks(2, 50, 0.19, 0.028),    blocks(3, 60, 0.073, 0.051),
      plain(0.028, 0.035),           plain(0.011, 0.014)],
-    [blocks(2, 170, 0.29, 0.19),    blocks(2, 134, 0.18, 0.099),   blocks(2, 75, 0.11, 0.075),
+    [blocks(2, 80, 0.29, 0.19),     blocks(2, 71, 0.18, 0.099),    blocks(2, 36, 0.11, 0.075),
      plain(0.072, 0.097),           plain(0.046, 0.065)],
-    [blocks(2, 341, 0.39, 0.26),    blocks(2, 350, 0.23, 0.14),    blocks(2, 181, 0.15, 0.11),
+    [blocks(2, 163, 0.39, 0.26),    blocks(2, 207, 0.23, 0.14),    blocks(2, 91, 0.15, 0.11),
      plain(0.14, 0.17),             plain(0.1, 0.12)],
-    [blocks(1, 150, 0.61, 0.32),    plain(0.35, 0.19),             plain(0.23, 0.14),
+    [blocks(1, 73, 0.61, 0.32),     plain(0.35, 0.19),             plain(0.23, 0.14),
      plain(0.2, 0.2),               plain(0.16, 0.13)],
 ];
 

@@ -98,9 +98,9 @@ fn examples() {
     assert_eq!(recommend(2, 4, Sampling::Stratified, true, f32::INFINITY).unwrap().method, Method::Shared);
     let filtered = |sampling| recommend(2, 16, sampling, true, f32::INFINITY).unwrap().filtered_error;
     assert!(filtered(Sampling::Stratified) < filtered(Sampling::Independent));
-    // Windows that overlap pay later than those side by side, of which 43,800 ns was measured.
+    // Windows that overlap pay later than those side by side, of which 46,900 ns was measured.
     let overlapping = recommend(2, 16, Sampling::Stratified, true, 60_000.0).unwrap();
-    assert_eq!((overlapping.method, overlapping.pays_from), (Method::PlainMean, 87_600.0));
+    assert_eq!((overlapping.method, overlapping.pays_from), (Method::PlainMean, 93_800.0));
     // Many samples bear more terms; in many dims there are too many of a high order.
     let order =
         |dims, samples| recommend(dims, samples, Sampling::Independent, false, f32::INFINITY).unwrap().config.order;
@@ -124,7 +124,7 @@ fn pinned() {
             bytes.extend([of.error, of.filtered_error, of.cost, of.pays_from].map(f32::to_le_bytes).as_flattened());
         }
     }
-    assert_eq!(crc(bytes), 0x27de_601e);
+    assert_eq!(crc(bytes), 0x6b99_a5a9);
 }
 
 /// Dims are rounded up, samples down, to what was measured.

@@ -4,7 +4,6 @@ use super::batch::Batch;
 use super::call::Call;
 use super::products::*;
 use crate::control_variate::Config;
-use core::array::from_fn;
 use core::ops::Range;
 
 /// A column of some rows of `WIDTH` numbers, for each lane from where its rows start.
@@ -34,7 +33,11 @@ impl Call<'_> {
     /// The pixels' lowest and highest values of each channel, as fits see them.
     pub(super) fn ranges(&self, pixels: &[usize; LANES]) -> [[Eight; 2]; Config::MAX_CHANNELS] {
         if self.n > 1 {
-            return from_fn(|channel| self.range(pixels, channel));
+            let mut ranges = [[NONE; 2]; Config::MAX_CHANNELS];
+            for (channel, range) in ranges.iter_mut().enumerate().take(self.config.channels) {
+                *range = self.range(pixels, channel);
+            }
+            return ranges;
         }
         let mut values = [NONE; Config::MAX_CHANNELS];
         let (f, first) = (self.reader.samples.f, pixels.map(|pixel| pixel * self.held));
@@ -44,18 +47,15 @@ impl Call<'_> {
             3 => put_row::<3>(f, &first, &mut values),
             _ => put_row::<4>(f, &first, &mut values),
         }
-        for (channel, values) in values.iter_mut().enumerate() {
+        for (channel, values) in values.iter_mut().enumerate().take(self.config.channels) {
             self.divide_by_factors(pixels, channel, values);
         }
         values.map(|values| [values; 2])
     }
 
-    /// The same of a channel, of several samples; of a channel that there is not nothing.
+    /// The same of a channel.
     fn range(&self, pixels: &[usize; LANES], channel: usize) -> [Eight; 2] {
         let (mut low, mut high) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
-        if channel >= self.config.channels {
-            return [low, high];
-        }
         for begin in (0..self.n).step_by(AT_ONCE) {
             let mut four = [NONE; AT_ONCE];
             let values = first_mut(&mut four, AT_ONCE.min(self.n - begin));

@@ -47,7 +47,7 @@ pub(crate) struct Run {
     end: End,
 }
 
-/// Where the state after the last step is.
+/// Where the state of a run that ended is.
 #[derive(Debug)]
 enum End {
     /// The run was short.
@@ -55,7 +55,7 @@ enum End {
     Checkpoint,
     /// Where the system has temporary files: the checkpoint could not be written. It is removed when it is dropped.
     Spare(TempPath),
-    Failed,
+    Failed(Error),
 }
 
 impl Run {
@@ -68,11 +68,11 @@ impl Run {
     }
 
     /// Of an error after the last step, how the outputs are made without taking the steps again.
-    fn kept(&mut self, error: Error) -> Error {
+    pub(crate) fn kept(&mut self, error: Error) -> Error {
         let again = match &mut self.end {
             _ if is_gone(&error) => return error,
             End::Unsaved => return error,
-            End::Failed => "The finished run could not be saved either".to_owned(),
+            End::Failed(_) => "The finished run could not be saved either".to_owned(),
             End::Checkpoint => format!(
                 "The finished run is saved in {}: run the same command again to write what it made",
                 self.checkpoint.display()
@@ -148,7 +148,7 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
     let mut end = End::Unsaved;
     if resumed || seconds >= WORTH_SAVING.min(every) {
         // A full disk is about to be reported by whoever writes the output.
-        end = save_end(&checkpoint, &problem, optimization);
+        end = save(&checkpoint, &problem, optimization);
         saved |= matches!(end, End::Checkpoint);
     }
     if watch.stopped() {
@@ -166,17 +166,15 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
     })
 }
 
-/// Saves the state after the last step, if need be in another place.
-fn save_end(checkpoint: &Path, problem: &Problem, optimization: &dyn Optimization) -> End {
-    if checkpoint::save(checkpoint, problem, optimization).is_ok() {
-        return End::Checkpoint;
-    }
+/// Saves the state of a run that ends here, if need be in another place.
+fn save(checkpoint: &Path, problem: &Problem, optimization: &dyn Optimization) -> End {
+    let Err(error) = checkpoint::save(checkpoint, problem, optimization) else { return End::Checkpoint };
     let spare = || {
         let file = Builder::new().prefix("fsot-").suffix(".checkpoint").tempfile().ok()?.into_temp_path();
         checkpoint::save(&file, problem, optimization).ok()?;
         Some(file)
     };
-    spare().map_or(End::Failed, End::Spare)
+    spare().map_or(End::Failed(error), End::Spare)
 }
 
 /// Adds a command's outputs and puts them in place, then removes its run's checkpoint.
@@ -203,13 +201,18 @@ fn leave(optimization: &dyn Optimization, path: &Path, problem: &Problem, why: O
         let nothing = "stopped before the first step was done: there is nothing to continue";
         return why.unwrap_or_else(|| Error::Stopped(nothing.to_owned()));
     }
-    if let Err(error) = checkpoint::save(path, problem, optimization) {
-        return Error::Input(format!("stopped, and the state could not be saved: {error}"));
-    }
+    let (place, again) = match save(path, problem, optimization) {
+        End::Failed(error) => return Error::Input(format!("stopped, and the state could not be saved: {error}")),
+        End::Spare(mut spare) => {
+            spare.disable_cleanup(true);
+            (spare.display().to_string(), format!(" with --checkpoint {}", spare.display()))
+        }
+        End::Checkpoint | End::Unsaved => (path.display().to_string(), String::new()),
+    };
     why.unwrap_or_else(|| {
         Error::Stopped(format!(
-            "stopped at step {done} of {all}; the state is saved in {}. Run the same command again to continue",
-            path.display()
+            "stopped at step {done} of {all}; the state is saved in {place}. Run the same command again{again} to \
+             continue"
         ))
     })
 }

@@ -43,7 +43,7 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
     let points = optimizer.points();
     drop(optimizer);
     let drawing = stipple.drawing(&points);
-    let drawn = rasterise(&drawing, size as f32)?;
+    let drawn = rasterise(&drawing, size as f32).map_err(|error| run.kept(error))?;
     let table = Table { points, classes: Some(stipple.labels()) };
     finish(&mut run, |outputs| {
         let picture = if format == Picture::Png { png(&drawn)? } else { format.encode(&drawing, size)? };

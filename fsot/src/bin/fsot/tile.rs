@@ -96,7 +96,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let samples = optimizer.samples();
     let file = TileFile::new(shape, problem.seed, &kernel, &samples.coordinates)?;
     // What is stored is measured, after rounding.
-    let report = measure(&file, &problem, args.integrands as usize)?;
+    let report = measure(&file, &problem, args.integrands as usize).map_err(|error| run.kept(error))?;
     let (text, json) = describe(out, &report, &run);
     finish(&mut run, |outputs| {
         outputs.add(out, file.bytes())?;
