@@ -14,8 +14,6 @@ use rayon::prelude::*;
 pub fn blurred_psnr(drawn: &RgbImage, source: &Photo, sigma: f32, linear: bool, grey: bool) -> f64 {
     let (width, height) = (drawn.width() as usize, drawn.height() as usize);
     let value = |value: f32| if linear { decode(value) } else { value };
-    // Pixels of the drawing per pixel of the source: sums become means.
-    let area = (width * height) as f64 / (source.width * source.height) as f64;
     let mut squares = 0.0;
     for channel in 0..3 {
         let expected: Vec<f32> = source
@@ -26,11 +24,11 @@ pub fn blurred_psnr(drawn: &RgbImage, source: &Photo, sigma: f32, linear: bool, 
                 if grey { luminance(rgb) } else { rgb[channel] }
             })
             .collect();
-        let expected = resample(source.width, source.height, &expected, width, height);
+        let expected = means([source.width, source.height], &expected, [width, height]);
         let difference: Vec<f32> = drawn
             .pixels()
             .zip(expected)
-            .map(|(pixel, expected)| value(f32::from(pixel.0[channel]) / 255.0) - (expected * area) as f32)
+            .map(|(pixel, expected)| value(f32::from(pixel.0[channel]) / 255.0) - expected)
             .collect();
         // The difference of blurred pictures is the blurred difference.
         squares += blurred_squares(&difference, width, height, sigma);
@@ -44,15 +42,20 @@ fn blurred_squares(values: &[f32], width: usize, height: usize, sigma: f32) -> f
     let block = (sigma / 8.0) as usize;
     if block >= 2 && width >= 2 * block && height >= 2 * block {
         let (columns, rows) = (width / block, height / block);
-        let area = (columns * rows) as f64 / (width * height) as f64;
-        let means: Vec<f32> =
-            resample(width, height, values, columns, rows).into_iter().map(|sum| (sum * area) as f32).collect();
+        let means = means([width, height], values, [columns, rows]);
         // Block means are blurred already, by a box.
         let scale = columns as f32 / width as f32;
         let rest = (sigma * sigma * scale * scale - 1.0 / 12.0).sqrt();
         return mean_square(&blur(&means, columns, rows, rest));
     }
     mean_square(&blur(values, width, height, sigma))
+}
+
+/// A picture at another size.
+fn means([width, height]: [usize; 2], values: &[f32], [columns, rows]: [usize; 2]) -> Vec<f32> {
+    // Pixels of the other per pixel of this: sums become means.
+    let area = (columns * rows) as f64 / (width * height) as f64;
+    resample(width, height, values, columns, rows).into_iter().map(|sum| (sum * area) as f32).collect()
 }
 
 fn mean_square(values: &[f32]) -> f64 {
@@ -67,9 +70,7 @@ pub(crate) fn blurred(values: &[f32], width: usize, height: usize, sigma: f32) -
         return blur(values, width, height, sigma);
     }
     let (columns, rows) = (width.div_ceil(block), height.div_ceil(block));
-    let area = (columns * rows) as f64 / (width * height) as f64;
-    let means: Vec<f32> =
-        resample(width, height, values, columns, rows).into_iter().map(|sum| (sum * area) as f32).collect();
+    let means = means([width, height], values, [columns, rows]);
     let means = blur(&means, columns, rows, sigma * columns as f32 / width as f32);
     (0..width * height).map(|i| means[i / width * rows / height * columns + i % width * columns / width]).collect()
 }

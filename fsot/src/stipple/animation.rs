@@ -1,6 +1,7 @@
 //! Animated stippling: frames that share points (figure 5.13).
 
-use super::options::{Options, effort, inks, paper, radius, spacing};
+use super::options::{Options, effort, inks, paper, spacing};
+use super::separation::radius;
 use crate::class::{Class, ClassFunction, Step};
 use crate::counted::counted;
 use crate::error::{Error, Result};
@@ -135,7 +136,8 @@ impl Animation {
             let target = ImageTarget::new(photo.width, photo.height, &ink.density, windows.window).map_err(at)?;
             let target = Arc::new(target);
             let area = ink.density.iter().map(|d| f64::from(*d)).sum::<f64>() / ink.density.len() as f64;
-            radii.push(radius(area, photo.extent(), windows.window));
+            let [width, height] = photo.extent().map(f64::from);
+            radii.push(radius(area * width * height, windows.window));
             classes.push(Class {
                 function: shown(&windows.of_frame(frame), points),
                 target: Arc::clone(&target) as Arc<dyn crate::target::Target>,

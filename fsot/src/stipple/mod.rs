@@ -16,7 +16,8 @@ use crate::picture::{Drawing, Photo};
 use crate::points::Points;
 use crate::random::stream;
 use crate::target::image::{ImageTarget, spread};
-use options::{effort, inks, paper, radius, spacing};
+use options::{effort, inks, paper, spacing};
+use separation::radius;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -79,7 +80,8 @@ impl Stipple {
             ..Problem::new(options.points, 2)
         };
         let ink_area = energies.iter().sum::<f64>() / photo.pixels.len() as f64;
-        let radius = radius(ink_area, photo.extent(), options.points);
+        let [width, height] = photo.extent().map(f64::from);
+        let radius = radius(ink_area * width * height, options.points);
         Ok(Stipple { problem, inks: dots, radius, blank: paper(photo.extent(), options) })
     }
 

@@ -67,12 +67,6 @@ pub(super) fn spacing(blank: &Drawing, dots: usize) -> f32 {
     (blank.size[0] * blank.size[1] / dots as f32).sqrt()
 }
 
-/// The radius of dots that together have `ink_area` of the paper.
-pub(super) fn radius(ink_area: f64, extent: [f32; 2], dots: usize) -> f32 {
-    let area = ink_area * f64::from(extent[0]) * f64::from(extent[1]);
-    (area / (dots as f64 * std::f64::consts::PI)).sqrt() as f32
-}
-
 /// The inks of a picture that has more than one tone, for so many dots.
 pub(super) fn inks(photo: &Photo, options: &Options, points: usize) -> Result<Vec<Ink>> {
     let all = |black: bool| {

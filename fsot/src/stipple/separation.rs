@@ -73,7 +73,7 @@ pub fn grey(photo: &Photo, tone: Tone, invert: bool, points: usize) -> Vec<Ink> 
         if invert { light } else { 1.0 - light }
     });
     let coverage: Vec<f32> = coverage.collect();
-    let radius = dot_radius(coverage.iter().copied(), points);
+    let radius = radius(coverage.iter().map(|part| f64::from(*part)).sum(), points);
     let (name, colour) = if invert { ("w", [255; 3]) } else { ("k", [0; 3]) };
     vec![Ink { name, colour, density: density(photo.width, photo.height, coverage, radius) }]
 }
@@ -89,8 +89,8 @@ pub fn cmyk(photo: &Photo, tone: Tone, grey_component: f32, points: usize) -> Ve
     let common = |pixel: usize| lack[0][pixel].min(lack[1][pixel]).min(lack[2][pixel]);
     let part = grey_component.clamp(0.0, 1.0);
     let black: Vec<f32> = (0..photo.pixels.len()).map(|pixel| common(pixel) * part).collect();
-    let all = (0..black.len()).map(|i| lack[0][i] + lack[1][i] + lack[2][i] - 2.0 * black[i]);
-    let radius = dot_radius(all, points);
+    let all = |i: usize| f64::from(lack[0][i] + lack[1][i] + lack[2][i] - 2.0 * black[i]);
+    let radius = radius((0..black.len()).map(all).sum(), points);
     let inked = |coverage| density(photo.width, photo.height, coverage, radius);
     let black = inked(black);
     let rest = |lack| inked(lack).into_iter().zip(&black).map(|(all, black)| (all - black).max(0.0)).collect();
@@ -103,10 +103,9 @@ pub fn cmyk(photo: &Photo, tone: Tone, grey_component: f32, points: usize) -> Ve
     ]
 }
 
-/// The radius in pixels of so many dots that cover this together, did none overlap.
-fn dot_radius(coverage: impl Iterator<Item = f32>, points: usize) -> f32 {
-    let area = coverage.map(f64::from).sum::<f64>();
-    (area / (points.max(1) as f64 * std::f64::consts::PI)).sqrt() as f32
+/// The radius of dots that together have this area.
+pub(super) fn radius(area: f64, dots: usize) -> f32 {
+    (area / (dots.max(1) as f64 * std::f64::consts::PI)).sqrt() as f32
 }
 
 /// Area of dots per area of paper for a coverage of each pixel. How much dots overlap depends on how many there are

@@ -46,7 +46,7 @@ fn wide(a: &Eight) -> Wide {
     out
 }
 
-/// The nearest finite `f32`s.
+/// [`saturate`] lane by lane, in vectors.
 fn narrow(a: &Wide) -> Eight {
     let limited = lanes::zip(a, &[f64::from(f32::MAX); LANES], |value, most| Real::max(Real::min(value, most), -most));
     let mut out = NONE;
@@ -265,6 +265,7 @@ impl Call<'_> {
                 told[l] = if by_groups & has_error { spread[l] } else { told[l] };
             }
             let (mean, mut error) = (narrow(&mean), narrow(&told));
+            // As `standard_error` has it.
             for l in 0..LANES {
                 error[l] = if told[l] < f64::INFINITY { error[l] } else { f32::INFINITY };
             }

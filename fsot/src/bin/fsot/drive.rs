@@ -58,6 +58,22 @@ enum End {
     Failed(Error),
 }
 
+impl End {
+    /// Where the state is, which is then kept, and what the same command takes to continue from there.
+    fn keep(&mut self, checkpoint: &Path) -> Option<(String, String)> {
+        match self {
+            End::Unsaved | End::Failed(_) => None,
+            End::Checkpoint => Some((checkpoint.display().to_string(), String::new())),
+            End::Spare(path) => {
+                path.disable_cleanup(true);
+                let place = path.display().to_string();
+                let again = format!(" with --checkpoint {place}");
+                Some((place, again))
+            }
+        }
+    }
+}
+
 impl Run {
     /// A line of a report.
     pub(crate) fn describe(&self, text: &mut String) {
@@ -69,18 +85,13 @@ impl Run {
 
     /// Of an error after the last step, how the outputs are made without taking the steps again.
     pub(crate) fn kept(&mut self, error: Error) -> Error {
-        let again = match &mut self.end {
-            _ if is_gone(&error) => return error,
-            End::Unsaved => return error,
-            End::Failed(_) => "The finished run could not be saved either".to_owned(),
-            End::Checkpoint => format!(
-                "The finished run is saved in {}: run the same command again to write what it made",
-                self.checkpoint.display()
-            ),
-            End::Spare(path) => {
-                path.disable_cleanup(true);
-                let path = path.display();
-                format!("The finished run is saved in {path}: run the same command again with --checkpoint {path}")
+        if is_gone(&error) || matches!(self.end, End::Unsaved) {
+            return error;
+        }
+        let again = match self.end.keep(&self.checkpoint) {
+            None => "The finished run could not be saved either".to_owned(),
+            Some((place, again)) => {
+                format!("The finished run is saved in {place}: run the same command again{again} to write what it made")
             }
         };
         Error::Input(format!("{error}. {again}"))
@@ -201,14 +212,11 @@ fn leave(optimization: &dyn Optimization, path: &Path, problem: &Problem, why: O
         let nothing = "stopped before the first step was done: there is nothing to continue";
         return why.unwrap_or_else(|| Error::Stopped(nothing.to_owned()));
     }
-    let (place, again) = match save(path, problem, optimization) {
-        End::Failed(error) => return Error::Input(format!("stopped, and the state could not be saved: {error}")),
-        End::Spare(mut spare) => {
-            spare.disable_cleanup(true);
-            (spare.display().to_string(), format!(" with --checkpoint {}", spare.display()))
-        }
-        End::Checkpoint | End::Unsaved => (path.display().to_string(), String::new()),
-    };
+    let mut end = save(path, problem, optimization);
+    if let End::Failed(error) = end {
+        return Error::Input(format!("stopped, and the state could not be saved: {error}"));
+    }
+    let (place, again) = end.keep(path).unwrap_or_default();
     why.unwrap_or_else(|| {
         Error::Stopped(format!(
             "stopped at step {done} of {all}; the state is saved in {place}. Run the same command again{again} to \
