@@ -38,6 +38,16 @@ impl Points {
         &self.coordinates
     }
 
+    /// One point.
+    pub(crate) fn point(&self, number: usize) -> &[f32] {
+        &self.coordinates[number * self.dims..][..self.dims]
+    }
+
+    /// The points, to be changed.
+    pub(crate) fn iter_mut(&mut self) -> std::slice::ChunksExactMut<'_, f32> {
+        self.coordinates.chunks_exact_mut(self.dims)
+    }
+
     /// The points, each a slice of `dims` coordinates.
     pub fn iter(&self) -> std::slice::ChunksExact<'_, f32> {
         self.coordinates.chunks_exact(self.dims)

@@ -77,8 +77,8 @@ fn distances<const D: usize>(points: &Points) -> [Vec<f64>; 2] {
             let found = tree.nearest_n::<SquaredEuclidean>(point, two);
             found.iter().filter(|n| n.item != own).fold(best, |best, n| best.min(n.distance))
         };
-        let one = |(index, point): (usize, &[f64; D])| {
-            let own = index as u32;
+        each(set.len(), &|index| {
+            let (point, own) = (&set[index], index as u32);
             let mut best = nearest(point, own, f64::INFINITY);
             if toroidal {
                 images(
@@ -88,10 +88,14 @@ fn distances<const D: usize>(points: &Points) -> [Vec<f64>; 2] {
                 );
             }
             best.sqrt()
-        };
-        set.par_iter().enumerate().with_min_len(256).map(one).collect()
+        })
     };
     [search(&bounded, false), search(&wrapped, true)]
+}
+
+/// What `one` says of so many points. Compiled once, not for each number of dimensions.
+fn each(points: usize, one: &(dyn Fn(usize) -> f64 + Sync)) -> Vec<f64> {
+    (0..points).into_par_iter().with_min_len(256).map(one).collect()
 }
 
 /// Visits the copies of a point in the neighbouring cells of the torus that are nearer to the unit cube than the best

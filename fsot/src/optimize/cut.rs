@@ -2,15 +2,16 @@
 
 use super::group::Group;
 use super::problem::Domain;
+use crate::points::Points;
 use crate::random::shuffle;
 use noisefloor::rng::Rng;
 use rayon::prelude::*;
 
 /// A window, or a slab on the way to windows.
 #[derive(Clone, Debug)]
-pub(super) struct Piece<const D: usize> {
-    pub(super) start: [f32; D],
-    pub(super) lengths: [f32; D],
+pub(super) struct Piece {
+    pub(super) start: Vec<f32>,
+    pub(super) lengths: Vec<f32>,
     /// The numbers of its points, by group; in the order in which they were cut.
     pub(super) members: Vec<Vec<u32>>,
 }
@@ -21,17 +22,11 @@ pub(super) struct Piece<const D: usize> {
 /// part of the points is its part of the domain, though some points may be outside by a little. If cuts were between
 /// coordinates, a window would have some points too many or too few, push them evenly between its walls, and so turn
 /// chance at its walls into errors of its own size, which no window sees.
-pub(super) fn cut<const D: usize>(
-    points: &[[f32; D]],
-    groups: &[Group],
-    per_axis: usize,
-    domain: Domain,
-    rng: &mut Rng,
-) -> Vec<Piece<D>> {
+pub(super) fn cut(points: &Points, groups: &[Group], per_axis: usize, domain: Domain, rng: &mut Rng) -> Vec<Piece> {
     let members = groups.iter().map(|group| group.members.clone()).collect();
-    let mut pieces = vec![Piece { start: [0.0; D], lengths: [1.0; D], members }];
+    let mut pieces = vec![Piece { start: vec![0.0; points.dims()], lengths: vec![1.0; points.dims()], members }];
     // Which axis comes first must not show.
-    let mut axes: [usize; D] = std::array::from_fn(|k| k);
+    let mut axes: Vec<usize> = (0..points.dims()).collect();
     shuffle(&mut axes, rng);
     for axis in axes {
         let first = rng.uniform_f64() + 0.5;
@@ -46,14 +41,8 @@ pub(super) fn cut<const D: usize>(
 }
 
 /// The parts of a piece between cuts across an axis, which has not been cut before.
-fn slabs<const D: usize>(
-    mut piece: Piece<D>,
-    axis: usize,
-    points: &[[f32; D]],
-    groups: &[Group],
-    places: &[f64],
-) -> Vec<Piece<D>> {
-    let at = |number: u32| points[number as usize][axis];
+fn slabs(mut piece: Piece, axis: usize, points: &Points, groups: &[Group], places: &[f64]) -> Vec<Piece> {
+    let at = |number: u32| points.point(number as usize)[axis];
     for members in &mut piece.members {
         // Coordinates are not negative: in the order of their bits. Equal ones by number.
         let mut keys: Vec<u64> = members.iter().map(|&i| u64::from(at(i).to_bits()) << 32 | u64::from(i)).collect();
@@ -73,7 +62,7 @@ fn slabs<const D: usize>(
             Some(place) if total == 0 => place as f32,
             Some(place) => (ranked().map(|of| rank(place, of)).sum::<usize>() as f64 / total as f64) as f32,
         };
-        let mut slab = Piece { members: Vec::with_capacity(groups.len()), start: piece.start, lengths: piece.lengths };
+        let mut slab = Piece { members: Vec::with_capacity(groups.len()), ..piece.clone() };
         (slab.start[axis], slab.lengths[axis]) = (low, high - low);
         for ((members, group), begin) in piece.members.iter().zip(groups).zip(&mut begins) {
             let end = match place {
@@ -106,7 +95,7 @@ mod tests {
         ) {
             let domain = if torus { Domain::Toroidal } else { Domain::Bounded };
             let rng = &mut stream(seed, 0, 0);
-            let places: Vec<[f32; 2]> = (0..points).map(|_| [rng.uniform_f32(), rng.uniform_f32()]).collect();
+            let places = Points::new(2, (0..2 * points).map(|_| rng.uniform_f32()).collect());
             let split = points as u32 / 3;
             let of = |range: std::ops::Range<u32>, ranked| Group { members: range.collect(), ranked };
             let (all, last) = (points as u32, points as u32 - 9);
@@ -125,8 +114,8 @@ mod tests {
                 prop_assert!((first - count as f32).abs() < 4.0, "{first} {count}");
                 // The others are where they are.
                 for &i in &window.members[2] {
-                    for ((at, start), length) in places[i as usize].iter().zip(window.start).zip(window.lengths) {
-                        prop_assert!((-1e-6..=length + 1e-6).contains(&(at - start)));
+                    for ((at, start), length) in places.point(i as usize).iter().zip(&window.start).zip(&window.lengths) {
+                        prop_assert!((-1e-6..=*length + 1e-6).contains(&(at - start)));
                     }
                 }
                 area += mine;

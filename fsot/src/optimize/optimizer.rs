@@ -13,6 +13,7 @@ use crate::memory;
 use crate::points::{BELOW_ONE, Points};
 use crate::random::stream;
 use crate::run::Optimization;
+use crate::target::MAX_DIMS;
 use noisefloor::rng::Rng;
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -33,7 +34,7 @@ pub struct Optimizer {
     contested: Vec<bool>,
     /// How windows share the points; empty without windows.
     pub(super) groups: Vec<Group>,
-    schedule: Schedule,
+    pub(super) schedule: Schedule,
     pub(super) iteration: u64,
     pub(super) coordinates: Vec<f32>,
     offsets: Vec<Vec<Offset>>,
@@ -113,15 +114,15 @@ impl Optimizer {
         &self.problem
     }
 
-    fn step_in<const D: usize>(&mut self) -> f64 {
-        let step = self.schedule.step(self.iteration);
+    fn step_whole(&mut self) -> f64 {
+        let (step, dims) = (self.schedule.step(self.iteration), self.problem.dims);
         let points = self.problem.points;
         let mut offsets = std::mem::take(&mut self.offsets);
         offsets.iter_mut().for_each(|offsets| offsets.resize(points, [0.0; 2]));
 
         let one = |(number, offsets): (usize, &mut Vec<Offset>)| {
             let mut rng = stream(self.problem.seed, self.iteration, number as u64);
-            let (class, slice) = self.draw::<D>(number, &mut rng);
+            let (class, slice) = self.draw(number, &mut rng);
             let mut workspace = self.workspaces.lock().ok().and_then(|mut all| all.pop()).unwrap_or_default();
             let target = &self.problem.classes[class].target;
             let write = |means: &mut [f32], density: &mut [f32], scratch: &mut Vec<f32>| {
@@ -131,7 +132,7 @@ impl Optimizer {
                 }
             };
             let bins = Bins { write, uniform: target.is_uniform() };
-            let energy = transport(&slice, &[1.0; D], &self.coordinates, bins, offsets, &mut workspace);
+            let energy = transport(&slice, &[1.0; MAX_DIMS][..dims], &self.coordinates, bins, offsets, &mut workspace);
             if let Ok(mut all) = self.workspaces.lock() {
                 all.push(workspace);
             }
@@ -139,7 +140,7 @@ impl Optimizer {
         };
         // What a thread costs to wake is more than a few points do.
         let alone = rayon::current_num_threads() == 1 || points < 256;
-        let slices: Vec<(Slice<D>, f64)> = if alone {
+        let slices: Vec<(Slice, f64)> = if alone {
             offsets.iter_mut().enumerate().map(one).collect()
         } else {
             let least = if self.workers < rayon::current_num_threads() { SLICES.div_ceil(self.workers) } else { 1 };
@@ -147,17 +148,17 @@ impl Optimizer {
         };
         let energy = slices.iter().map(|(_, energy)| energy).sum::<f64>() / SLICES as f64;
 
-        let moved: Vec<(&Slice<D>, &[Offset])> =
+        let moved: Vec<(&Slice, &[Offset])> =
             slices.iter().zip(&offsets).map(|((slice, _), offsets)| (slice, &offsets[..])).collect();
         let settle = settle(self.problem.domain);
         if alone {
-            advance(&moved, 0, step, &mut self.coordinates, settle);
+            advance(&moved, dims, 0, step, &mut self.coordinates, settle);
         } else {
             const CHUNK: usize = 1024;
             self.coordinates
-                .par_chunks_mut(CHUNK * D)
+                .par_chunks_mut(CHUNK * dims)
                 .enumerate()
-                .for_each(|(chunk, coordinates)| advance(&moved, chunk * CHUNK, step, coordinates, settle));
+                .for_each(|(chunk, coordinates)| advance(&moved, dims, chunk * CHUNK, step, coordinates, settle));
         }
         self.offsets = offsets;
         self.iteration += 1;
@@ -165,12 +166,12 @@ impl Optimizer {
     }
 
     /// Draws slice `number` of an iteration.
-    fn draw<const D: usize>(&self, number: usize, rng: &mut Rng) -> (usize, Slice<D>) {
-        let mut slice = Slice::new();
+    fn draw(&self, number: usize, rng: &mut Rng) -> (usize, Slice) {
+        let mut slice = Slice::default();
         let (class, z) = self.draw_subclass(number, rng);
-        slice.direction = direction(rng, self.problem.axis_priority);
+        slice.direction = direction(self.problem.dims, rng, self.problem.axis_priority);
         if self.problem.domain == Domain::Toroidal {
-            slice.shift = std::array::from_fn(|_| rng.uniform_f32());
+            slice.shift = (0..self.problem.dims).map(|_| rng.uniform_f32()).collect();
         }
         slice.count = self.filters[class].select(z, &mut slice.selected);
         (class, slice)
@@ -216,23 +217,9 @@ impl Optimization for Optimizer {
             return 0.0;
         }
         if self.schedule.in_windows(self.iteration) {
-            let step = self.schedule.step(self.iteration);
-            return match self.problem.dims {
-                1 => self.step_in_windows::<1>(step),
-                2 => self.step_in_windows::<2>(step),
-                _ => self.step_in_windows::<3>(step),
-            };
+            return self.step_in_windows();
         }
-        match self.problem.dims {
-            1 => self.step_in::<1>(),
-            2 => self.step_in::<2>(),
-            3 => self.step_in::<3>(),
-            4 => self.step_in::<4>(),
-            5 => self.step_in::<5>(),
-            6 => self.step_in::<6>(),
-            7 => self.step_in::<7>(),
-            _ => self.step_in::<8>(),
-        }
+        self.step_whole()
     }
 
     fn coordinates(&self) -> &[f32] {

@@ -1,28 +1,24 @@
 //! One slice: the points of a subclass, projected on a direction and transported to their target (5.22-5.24).
 
 use super::rank::{KEY_BITS, Ranking};
+use crate::target::MAX_DIMS;
 use std::ops::Range;
 
 /// What a slice did to a point: its offset along the direction times its weight, and the weight, the factor of (5.24).
 pub(crate) type Offset = [f32; 2];
 
 /// Which points a slice takes, and how it projects them.
-#[derive(Clone, Debug)]
-pub(crate) struct Slice<const D: usize> {
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Slice {
     /// A unit vector.
-    pub(crate) direction: [f32; D],
-    /// Added to every coordinate, modulo the lengths of the region, before projection; 0 unless the domain is a torus.
-    pub(crate) shift: [f32; D],
+    pub(crate) direction: Vec<f32>,
+    /// Added to every coordinate, modulo the lengths of the region, before projection; none unless the domain is a
+    /// torus.
+    pub(crate) shift: Vec<f32>,
     /// The points' ranges, ascending.
     pub(crate) selected: Vec<Range<u32>>,
     /// The number of points in them.
     pub(crate) count: usize,
-}
-
-impl<const D: usize> Slice<D> {
-    pub(crate) fn new() -> Slice<D> {
-        Slice { direction: [0.0; D], shift: [0.0; D], selected: Vec::new(), count: 0 }
-    }
 }
 
 /// Memory that slices use one after the other; about 32 bytes per point.
@@ -49,9 +45,9 @@ pub(crate) struct Bins<F> {
 /// Transports the selected points of `coordinates`, in the region [0, lengths], to their target's bins and leaves what
 /// happened to point i in `offsets[i]`; those of other points are not touched. Returns the mean squared distance that
 /// the points have to their bins' means.
-pub(crate) fn transport<const D: usize>(
-    slice: &Slice<D>,
-    lengths: &[f32; D],
+pub(crate) fn transport(
+    slice: &Slice,
+    lengths: &[f32],
     coordinates: &[f32],
     bins: Bins<impl FnOnce(&mut [f32], &mut [f32], &mut Vec<f32>)>,
     offsets: &mut [Offset],
@@ -78,6 +74,16 @@ pub(crate) fn transport<const D: usize>(
     }
     let top = ROUNDING - 1.0;
     let quantum = width / top;
+    let project = match lengths.len() {
+        1 => project::<1>,
+        2 => project::<2>,
+        3 => project::<3>,
+        4 => project::<4>,
+        5 => project::<5>,
+        6 => project::<6>,
+        7 => project::<7>,
+        _ => project::<MAX_DIMS>,
+    };
     project(slice, lengths, coordinates, low, top / width.max(f32::MIN_POSITIVE), keys);
 
     let ranks =
@@ -116,34 +122,36 @@ pub(crate) fn transport<const D: usize>(
 
 /// The keys of the selected points: projected coordinates as integers.
 fn project<const D: usize>(
-    slice: &Slice<D>,
-    lengths: &[f32; D],
+    slice: &Slice,
+    lengths: &[f32],
     coordinates: &[f32],
     low: f32,
     scale: f32,
     keys: &mut [u32],
 ) {
     let key = |t: f32| (((t - low) * scale).clamp(0.0, ROUNDING - 1.0) + ROUNDING).to_bits() & ((1 << KEY_BITS) - 1);
-    let wraps = slice.shift != [0.0; D];
+    let array = |of: &[f32]| std::array::from_fn::<f32, D, _>(|k| of[k]);
+    let direction = array(&slice.direction);
     let mut keys = keys;
     for range in &slice.selected {
         let (here, rest) = keys.split_at_mut(range.len());
         keys = rest;
         let (points, _) = coordinates[range.start as usize * D..range.end as usize * D].as_chunks::<D>();
-        if wraps {
+        if slice.shift.is_empty() {
             for (point, place) in points.iter().zip(here) {
                 let mut t = 0.0;
-                for k in 0..D {
-                    let x = point[k] + slice.shift[k];
-                    t += (if x >= lengths[k] { x - lengths[k] } else { x }) * slice.direction[k];
+                for (x, direction) in point.iter().zip(&direction) {
+                    t += x * direction;
                 }
                 *place = key(t);
             }
         } else {
+            let (lengths, shift) = (array(lengths), array(&slice.shift));
             for (point, place) in points.iter().zip(here) {
                 let mut t = 0.0;
-                for (x, direction) in point.iter().zip(&slice.direction) {
-                    t += x * direction;
+                for k in 0..D {
+                    let x = point[k] + shift[k];
+                    t += (if x >= lengths[k] { x - lengths[k] } else { x }) * direction[k];
                 }
                 *place = key(t);
             }
@@ -151,21 +159,22 @@ fn project<const D: usize>(
     }
 }
 
-/// Moves the points `first..first + coordinates.len() / D`, whose coordinates are given, by the offsets that slices
-/// left for them: by the weighted mean of the offsets, times D because each shows one direction of D only, times
-/// `step`. `settle(from, to, axis)` says where a coordinate goes that would go from one place to the other.
-pub(crate) fn advance<const D: usize>(
-    slices: &[(&Slice<D>, &[Offset])],
+/// Moves points of `dims` coordinates from number `first` on, as many as are given, by the offsets that slices left for
+/// them: by the weighted mean of the offsets, times `dims` because each shows one direction of so many, times `step`.
+/// `settle(from, to, axis)` says where a coordinate goes that would go from one place to the other.
+pub(crate) fn advance(
+    slices: &[(&Slice, &[Offset])],
+    dims: usize,
     first: usize,
     step: f32,
     coordinates: &mut [f32],
     settle: impl Fn(f32, f32, usize) -> f32,
 ) {
     const BLOCK: usize = 256;
-    for (block, coordinates) in coordinates.chunks_mut(BLOCK * D).enumerate() {
+    for (block, coordinates) in coordinates.chunks_mut(BLOCK * dims).enumerate() {
         let begin = first + block * BLOCK;
-        let end = begin + coordinates.len() / D;
-        let mut sums = [[0.0f32; BLOCK]; D];
+        let end = begin + coordinates.len() / dims;
+        let mut sums = [[0.0f32; BLOCK]; MAX_DIMS];
         let mut weights = [0.0f32; BLOCK];
         for (slice, offsets) in slices {
             let after = slice.selected.partition_point(|range| range.end as usize <= begin);
@@ -183,8 +192,8 @@ pub(crate) fn advance<const D: usize>(
                 }
             }
         }
-        for (i, point) in coordinates.chunks_exact_mut(D).enumerate() {
-            let factor = step * D as f32 / (weights[i] + (D - 1) as f32);
+        for (i, point) in coordinates.chunks_exact_mut(dims).enumerate() {
+            let factor = step * dims as f32 / (weights[i] + (dims - 1) as f32);
             if weights[i] > 0.0 {
                 for (k, x) in point.iter_mut().enumerate() {
                     *x = settle(*x, *x + factor * sums[k][i], k);
