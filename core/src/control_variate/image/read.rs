@@ -6,25 +6,32 @@ use super::products::*;
 use crate::control_variate::Config;
 use core::ops::Range;
 
-/// A column of some rows of `WIDTH` numbers, for each lane from where its rows start.
-fn put_column<const WIDTH: usize>(rows: &[f32], starts: &[usize; LANES], column: usize, out: &mut [Eight]) {
-    for (lane, start) in starts.iter().enumerate() {
-        let (rows, _) = from(rows, *start).as_chunks::<WIDTH>();
-        let put = |(out, row): (&mut Eight, &[f32; WIDTH])| out[lane % LANES] = row[column % WIDTH];
-        match (rows.first_chunk::<AT_ONCE>(), out.as_chunks_mut::<AT_ONCE>().0) {
-            // Four, without a look for each whether it is there: 1.5 to 6 % fewer instructions of a fit.
-            (Some(rows), [out]) => out.iter_mut().zip(rows).for_each(put),
-            _ => out.iter_mut().zip(rows).for_each(put),
-        }
-    }
-}
-
-/// One of some rows of `WIDTH` numbers for each lane, a column for each number.
-fn put_row<const WIDTH: usize>(rows: &[f32], which: &[usize; LANES], out: &mut [Eight]) {
+/// Rows of `WIDTH` numbers for each lane, from row `which` on: in a column for each number those of `taken`.
+fn put_rows<const WIDTH: usize, const ROWS: usize>(
+    rows: &[f32],
+    which: &[usize; LANES],
+    taken: &Range<usize>,
+    out: &mut [[Eight; ROWS]],
+) {
     let (rows, _) = rows.as_chunks::<WIDTH>();
-    for (lane, &row) in which.iter().enumerate() {
-        for (out, value) in out.iter_mut().zip(rows.get(row).into_iter().flatten()) {
-            out[lane % LANES] = *value;
+    let Some(out) = out.first_chunk_mut::<WIDTH>() else { return };
+    for (lane, &first) in which.iter().enumerate() {
+        let mut put = |row: usize, numbers: &[f32; WIDTH]| {
+            for (out, number) in out.iter_mut().zip(numbers) {
+                out[row % ROWS][lane % LANES] = *number;
+            }
+        };
+        if taken.len() == 1 {
+            rows.get(first).into_iter().for_each(|numbers| put(taken.start, numbers));
+            continue;
+        }
+        let rows = from(rows, first);
+        match rows.first_chunk::<AT_ONCE>() {
+            // Four, without a look for each whether it is there: 1.5 to 6 % fewer instructions of a fit.
+            Some(rows) if taken.len() == AT_ONCE => {
+                rows.iter().enumerate().for_each(|(row, numbers)| put(row, numbers));
+            }
+            _ => taken.clone().zip(rows).for_each(|(row, numbers)| put(row, numbers)),
         }
     }
 }
@@ -32,41 +39,26 @@ fn put_row<const WIDTH: usize>(rows: &[f32], which: &[usize; LANES], out: &mut [
 impl Call<'_> {
     /// The pixels' lowest and highest values of each channel, as fits see them.
     pub(super) fn ranges(&self, pixels: &[usize; LANES]) -> [[Eight; 2]; Config::MAX_CHANNELS] {
-        if self.n > 1 {
-            let mut ranges = [[NONE; 2]; Config::MAX_CHANNELS];
-            for (channel, range) in ranges.iter_mut().enumerate().take(self.config.channels) {
-                *range = self.range(pixels, channel);
-            }
-            return ranges;
+        let f = self.reader.samples.f;
+        if self.n == 1 {
+            let mut values = [[NONE]; Config::MAX_CHANNELS];
+            self.put_rows(f, pixels, (self.held, 0), &(0..1), &mut values);
+            return values.map(|[only]| [only; 2]);
         }
-        let mut values = [NONE; Config::MAX_CHANNELS];
-        let (f, first) = (self.reader.samples.f, pixels.map(|pixel| pixel * self.held));
-        match self.config.channels {
-            1 => put_row::<1>(f, &first, &mut values),
-            2 => put_row::<2>(f, &first, &mut values),
-            3 => put_row::<3>(f, &first, &mut values),
-            _ => put_row::<4>(f, &first, &mut values),
-        }
-        for (channel, values) in values.iter_mut().enumerate().take(self.config.channels) {
-            self.divide_by_factors(pixels, channel, values);
-        }
-        values.map(|values| [values; 2])
-    }
-
-    /// The same of a channel.
-    fn range(&self, pixels: &[usize; LANES], channel: usize) -> [Eight; 2] {
-        let (mut low, mut high) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
+        let mut ranges = [[[f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]]; Config::MAX_CHANNELS];
         for begin in (0..self.n).step_by(AT_ONCE) {
-            let mut four = [NONE; AT_ONCE];
-            let values = first_mut(&mut four, AT_ONCE.min(self.n - begin));
-            self.put_rows(self.reader.samples.f, pixels, (self.held, begin), channel, values);
-            for value in values {
-                low = lanes::zip(value, &low, Real::min);
-                high = lanes::zip(value, &high, Real::max);
+            let mut values = [[NONE; AT_ONCE]; Config::MAX_CHANNELS];
+            let taken = 0..AT_ONCE.min(self.n - begin);
+            self.put_rows(f, pixels, (self.held, begin), &taken, &mut values);
+            for ([low, high], values) in ranges.iter_mut().zip(&values).take(self.config.channels) {
+                for value in first(values, taken.len()) {
+                    *low = lanes::zip(value, low, Real::min);
+                    *high = lanes::zip(value, high, Real::max);
+                }
+                lanes::keep_together();
             }
-            lanes::keep_together();
         }
-        [low, high]
+        ranges
     }
 
     /// A channel of one of a pixel's so many rows of numbers, for eight pixels, divided by the pixels' factors.
@@ -91,28 +83,28 @@ impl Call<'_> {
         }
     }
 
-    /// As many of a pixel's so many rows of numbers as `out` holds, from one on, for eight pixels.
-    fn put_rows(
+    /// Some of a pixel's so many rows of numbers, from one on, for eight pixels: of each channel in its rows `taken`.
+    fn put_rows<const ROWS: usize>(
         &self,
         rows: &[f32],
         pixels: &[usize; LANES],
         (each, first): (usize, usize),
-        channel: usize,
-        out: &mut [Eight],
+        taken: &Range<usize>,
+        out: &mut [[Eight; ROWS]],
     ) {
-        let channels = self.config.channels;
-        if let [out] = out {
-            *out = self.gather(rows, pixels, (each, first), channel);
-            return;
+        let which = pixels.map(|pixel| pixel * each + first);
+        match self.config.channels {
+            1 => put_rows::<1, ROWS>(rows, &which, taken, out),
+            2 => put_rows::<2, ROWS>(rows, &which, taken, out),
+            3 => put_rows::<3, ROWS>(rows, &which, taken, out),
+            _ => put_rows::<4, ROWS>(rows, &which, taken, out),
         }
-        let starts = pixels.map(|pixel| (pixel * each + first) * channels);
-        match channels {
-            1 => put_column::<1>(rows, &starts, channel, out),
-            2 => put_column::<2>(rows, &starts, channel, out),
-            3 => put_column::<3>(rows, &starts, channel, out),
-            _ => put_column::<4>(rows, &starts, channel, out),
+        let divided = if self.image.factors.is_empty() { 0 } else { self.config.channels };
+        for (channel, values) in out.iter_mut().enumerate().take(divided) {
+            for values in part_mut(values, taken.start, taken.len()) {
+                self.divide_by_factors(pixels, channel, values);
+            }
         }
-        out.iter_mut().for_each(|values| self.divide_by_factors(pixels, channel, values));
     }
 
     /// What a pixel's values are divided by. Black says nothing about what it multiplies: 1.
@@ -169,19 +161,22 @@ impl Call<'_> {
     ) {
         let (inputs, rest) = halves_mut(values, self.config.channels);
         let index = |channel| batch.entry(channel, (block, slot));
-        for (channel, values) in inputs.iter_mut().enumerate() {
-            let out = part_mut(values, row, samples.len());
-            match batch.ranges.get(index(channel)) {
-                // The survey has read it.
-                Some([only, _]) if self.n == 1 => out.fill(*only),
-                _ => self.put_rows(self.reader.samples.f, pixels, (self.held, samples.start), channel, out),
+        let (rows, taken) = ((self.held, samples.start), row..row + samples.len());
+        if self.n == 1 {
+            // The survey has read it.
+            for (channel, out) in inputs.iter_mut().enumerate() {
+                let [only, _] = at(batch.ranges, index(channel));
+                part_mut(out, row, 1).fill(only);
             }
+        } else {
+            self.put_rows(self.reader.samples.f, pixels, rows, &taken, inputs);
+        }
+        if !rest.is_empty() {
+            self.put_rows(self.image.known, pixels, rows, &taken, rest);
         }
         for (channel, (out, values)) in rest.iter_mut().zip(inputs).enumerate() {
-            let out = part_mut(out, row, samples.len());
             let [coefficient, integral] = [&*batch.coefficients, &*batch.integrals].map(|all| at(all, index(channel)));
-            self.put_rows(self.image.known, pixels, (self.held, samples.start), channel, out);
-            for (out, value) in out.iter_mut().zip(from(values, row)) {
+            for (out, value) in part_mut(out, row, samples.len()).iter_mut().zip(from(values, row)) {
                 *out = lanes::minus_product(*value, coefficient, minus(out, &integral));
             }
         }
