@@ -87,7 +87,7 @@ typedef struct nf_cv_config {
 
 // Samples of integrals, row after row. What there is not is zero: `nf_cv_samples s = {.u = u, .f = f, .n = n};`.
 typedef struct nf_cv_samples {
-    // n rows of the configuration's `stride` floats, of which the first `dims` count; the last row may end after them.
+    // n rows of `stride` floats, uniform as drawn, of which the first `dims` count; the last may end after them.
     const float *u;
     const float *f; // n rows of `channels` floats.
     size_t n; // Samples of each integral; below 2^32, of an image in all. Of several, arrays hold one after the other.

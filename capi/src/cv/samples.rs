@@ -9,7 +9,7 @@ use noisefloor_core::control_variate::{Config, Samples};
 #[derive(Clone, Copy)]
 #[allow(non_camel_case_types)]
 pub struct nf_cv_samples {
-    /// n rows of the configuration's `stride` floats, of which the first `dims` count; the last row may end after them.
+    /// n rows of `stride` floats, uniform as drawn, of which the first `dims` count; the last may end after them.
     pub u: *const f32,
     /// n rows of `channels` floats.
     pub f: *const f32,

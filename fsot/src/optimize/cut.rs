@@ -114,7 +114,8 @@ mod tests {
                 prop_assert!((first - count as f32).abs() < 4.0, "{first} {count}");
                 // The others are where they are.
                 for &i in &window.members[2] {
-                    for ((at, start), length) in places.point(i as usize).iter().zip(&window.start).zip(&window.lengths) {
+                    let place = places.point(i as usize).iter().zip(&window.start).zip(&window.lengths);
+                    for ((at, start), length) in place {
                         prop_assert!((-1e-6..=*length + 1e-6).contains(&(at - start)));
                     }
                 }
