@@ -9,9 +9,11 @@ use super::terms::Terms;
 use core::f32::consts::LOG2_E;
 use core::hint::black_box;
 
-/// How much what independent samples say for a fit within their pixels counts, beside what the pixels' spread says.
-/// What they say against one counts whole.
+/// How much what samples say for a fit within their pixels counts, beside what the pixels' spread says; and of
+/// stratified ones, whose means differ by less. What they say against one counts whole, and so does what they say for
+/// light that is known, as that takes one coefficient.
 const WITHIN: f32 = 0.25;
+const WITHIN_STRATIFIED: f32 = 0.05;
 /// How much what a colour's own pixels say counts where it is chosen for it.
 const OWN: f32 = 0.85;
 /// How much sharper that choice is.
@@ -252,8 +254,7 @@ impl<'a> Spreads<'a> {
         present: &Eight,
         shares: &mut Shares<'_>,
     ) {
-        // Stratified samples' means differ by less than their variance within pixels tells: it may only warn.
-        let part = if is_stratified { 0.0 } else { WITHIN };
+        let part = if is_stratified { WITHIN_STRATIFIED } else { WITHIN };
         for (by, channel) in (0..=colours).flat_map(|by| (0..self.choices.channels).map(move |channel| (by, channel))) {
             self.share(channel, by, part, present, shares.of_mut(time + by, channel));
         }
@@ -285,6 +286,7 @@ impl<'a> Spreads<'a> {
             *share = product(&lanes::log2(&ratio), &power);
             if has_several {
                 let ratio = over(within, &most_noise, &inverse_noise);
+                let part = if choice < choices.fits { part } else { 1.0 };
                 let logarithm =
                     lanes::each(&lanes::log2(&ratio), |value| if value < 0.0 { part * value } else { value });
                 *share = lanes::plus_product(*share, logarithm, power_within);
