@@ -296,6 +296,35 @@ fn squared_errors() {
     }
 }
 
+/// Where all light arrives, stratified samples follow it, however uneven it is across a window: the spread of their
+/// means is then nearly all the picture's own.
+#[test]
+fn stratified_samples_follow_uneven_light() {
+    let (n, mut rng) = (16, SplitMix64::new(6));
+    let level = |pixel: usize| {
+        let [x, y] = [pixel % WIDTH, pixel / WIDTH].map(|place| place as f64 / WIDTH as f64 - 0.4);
+        1.0 / (0.05 + x * x + y * y)
+    };
+    let stratum =
+        |sample: usize| [sample % 4, sample % n / 4].map(|place| (place as f64 + f64::from(rng.uniform_f32())) / 4.0);
+    let u: Vec<[f64; 2]> = (0..PIXELS * n).map(stratum).collect();
+    let known: Vec<f32> = (0..).zip(&u).map(|(i, [x, y])| (level(i / n) * (0.5 + 2.0 * x * y)) as f32).collect();
+    let frame = Frame {
+        n,
+        u: u.as_flattened().iter().map(|&u| u as f32).collect(),
+        f: known.clone(),
+        known,
+        integrals: (0..PIXELS).map(|pixel| level(pixel) as f32).collect(),
+        surfaces: vec![],
+        factors: vec![],
+    };
+    let means = frame.means(&Config { stratified: true, ..Config::new(2, 1, 1) }, &frame.image());
+    let error = |of: &dyn Fn(usize) -> f64| (0..PIXELS).map(|pixel| (of(pixel) - level(pixel)).powi(2)).sum::<f64>();
+    let [known, plain] = [error(&|pixel| means[pixel]), error(&|pixel| frame.mean(&frame.f, pixel))];
+    println!("{known} of {plain}");
+    assert!(known < 0.01 * plain, "{known} of {plain}");
+}
+
 /// Powers of two change exponents alone, and colours follow the same rule each by itself.
 #[test]
 fn scales_and_channels() {

@@ -9,10 +9,10 @@ use super::terms::Terms;
 use core::f32::consts::LOG2_E;
 use core::hint::black_box;
 
-/// How much what samples say for a fit within their pixels counts, beside what the pixels' spread says; and of
-/// stratified ones, whose means differ by less. What they say against one counts whole, and so does what they say for
-/// light that is known, as that takes one coefficient.
+/// How much what samples say for a fit within their pixels counts, beside what the pixels' spread says. What they say
+/// against one counts whole.
 const WITHIN: f32 = 0.25;
+/// The same for fits to stratified samples, whose means differ by less, unless to what is left of light that is known.
 const WITHIN_STRATIFIED: f32 = 0.05;
 /// How much what a colour's own pixels say counts where it is chosen for it.
 const OWN: f32 = 0.85;
@@ -286,7 +286,7 @@ impl<'a> Spreads<'a> {
             *share = product(&lanes::log2(&ratio), &power);
             if has_several {
                 let ratio = over(within, &most_noise, &inverse_noise);
-                let part = if choice < choices.fits { part } else { 1.0 };
+                let part = if choice < choices.fits { part } else { WITHIN };
                 let logarithm =
                     lanes::each(&lanes::log2(&ratio), |value| if value < 0.0 { part * value } else { value });
                 *share = lanes::plus_product(*share, logarithm, power_within);
