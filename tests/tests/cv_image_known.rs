@@ -1,6 +1,6 @@
 //! Shared fits that are told what each sample would be with nothing in the way, and its integral.
 
-use crate::cv_support::points;
+use crate::cv_support::{jittered, points};
 use noisefloor::Error;
 use noisefloor::control_variate::{Config, Estimator, Image, Ridge, Samples, image_workspace_len};
 use noisefloor_tests::random::SplitMix64;
@@ -305,13 +305,12 @@ fn stratified_samples_follow_uneven_light() {
         let [x, y] = [pixel % WIDTH, pixel / WIDTH].map(|place| place as f64 / WIDTH as f64 - 0.4);
         1.0 / (0.05 + x * x + y * y)
     };
-    let stratum =
-        |sample: usize| [sample % 4, sample % n / 4].map(|place| (place as f64 + f64::from(rng.uniform_f32())) / 4.0);
-    let u: Vec<[f64; 2]> = (0..PIXELS * n).map(stratum).collect();
-    let known: Vec<f32> = (0..).zip(&u).map(|(i, [x, y])| (level(i / n) * (0.5 + 2.0 * x * y)) as f32).collect();
+    let u = jittered(PIXELS, n, &mut rng);
+    let unshadowed = |(sample, u): (usize, &[f32])| level(sample / n) * (0.5 + 2.0 * f64::from(u[0] * u[1]));
+    let known: Vec<f32> = u.chunks(2).enumerate().map(|sample| unshadowed(sample) as f32).collect();
     let frame = Frame {
         n,
-        u: u.as_flattened().iter().map(|&u| u as f32).collect(),
+        u,
         f: known.clone(),
         known,
         integrals: (0..PIXELS).map(|pixel| level(pixel) as f32).collect(),

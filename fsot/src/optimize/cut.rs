@@ -62,7 +62,8 @@ fn slabs(mut piece: Piece, axis: usize, points: &Points, groups: &[Group], place
             Some(place) if total == 0 => place as f32,
             Some(place) => (ranked().map(|of| rank(place, of)).sum::<usize>() as f64 / total as f64) as f32,
         };
-        let mut slab = Piece { members: Vec::with_capacity(groups.len()), ..piece.clone() };
+        let (start, lengths) = (piece.start.clone(), piece.lengths.clone());
+        let mut slab = Piece { members: Vec::with_capacity(groups.len()), start, lengths };
         (slab.start[axis], slab.lengths[axis]) = (low, high - low);
         for ((members, group), begin) in piece.members.iter().zip(groups).zip(&mut begins) {
             let end = match place {

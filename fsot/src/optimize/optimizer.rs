@@ -34,7 +34,7 @@ pub struct Optimizer {
     contested: Vec<bool>,
     /// How windows share the points; empty without windows.
     pub(super) groups: Vec<Group>,
-    pub(super) schedule: Schedule,
+    schedule: Schedule,
     pub(super) iteration: u64,
     pub(super) coordinates: Vec<f32>,
     offsets: Vec<Vec<Offset>>,
@@ -114,9 +114,8 @@ impl Optimizer {
         &self.problem
     }
 
-    fn step_whole(&mut self) -> f64 {
-        let (step, dims) = (self.schedule.step(self.iteration), self.problem.dims);
-        let points = self.problem.points;
+    fn step_whole(&mut self, step: f32) -> f64 {
+        let (points, dims) = (self.problem.points, self.problem.dims);
         let mut offsets = std::mem::take(&mut self.offsets);
         offsets.iter_mut().for_each(|offsets| offsets.resize(points, [0.0; 2]));
 
@@ -216,10 +215,8 @@ impl Optimization for Optimizer {
             self.iteration += 1;
             return 0.0;
         }
-        if self.schedule.in_windows(self.iteration) {
-            return self.step_in_windows();
-        }
-        self.step_whole()
+        let step = self.schedule.step(self.iteration);
+        if self.schedule.in_windows(self.iteration) { self.step_in_windows(step) } else { self.step_whole(step) }
     }
 
     fn coordinates(&self) -> &[f32] {

@@ -35,7 +35,7 @@ pub(super) struct WindowWorkspace {
 
 impl Optimizer {
     /// Cuts the domain at random places and optimises each window alone, as a box with uniform targets.
-    pub(super) fn step_in_windows(&mut self) -> f64 {
+    pub(super) fn step_in_windows(&mut self, step: f32) -> f64 {
         let dims = self.problem.dims;
         let mut rng = stream(self.problem.seed, self.iteration, PLACES);
         let per_axis = windows_per_axis(self.problem.points, dims).max(2);
@@ -63,7 +63,7 @@ impl Optimizer {
                 let place = |&i: &u32| places.point(i as usize).iter().zip(&start).map(|(x, start)| x - start);
                 let coordinates = numbers.iter().flat_map(place).collect();
                 let mut window = Window { number, start, lengths, numbers, coordinates };
-                let energy = this.optimize_window(&mut window, workspace);
+                let energy = this.optimize_window(&mut window, step, workspace);
                 (window, energy)
             })
             .collect();
@@ -82,9 +82,9 @@ impl Optimizer {
     }
 
     /// A few iterations in a window. Returns the sum over its points of the mean squared distance before them.
-    fn optimize_window(&self, window: &mut Window, workspace: &mut WindowWorkspace) -> f64 {
+    fn optimize_window(&self, window: &mut Window, step: f32, workspace: &mut WindowWorkspace) -> f64 {
         let Window { number, lengths, numbers, coordinates, .. } = window;
-        let (dims, step) = (lengths.len(), self.schedule.step(self.iteration));
+        let dims = lengths.len();
         let WindowWorkspace { transport: memory, offsets } = workspace;
         offsets.resize_with(SLICES, Vec::new);
         offsets
@@ -103,10 +103,12 @@ impl Optimizer {
                 slice.count = self.filters[class].select_of(z, numbers, &mut slice.selected);
                 let write = |means: &mut [f32], density: &mut [f32], _: &mut Vec<f32>| {
                     let mut extents = [0.0; MAX_DIMS];
-                    let extents = &mut extents[..dims];
-                    (0..dims).for_each(|k| extents[k] = slice.direction[k].abs() * lengths[k]);
-                    let center = (0..dims).map(|k| 0.5 * slice.direction[k] * lengths[k]).sum();
-                    uniform_bins(center, extents, range, means, density);
+                    let mut center = 0.0;
+                    for (extent, (direction, length)) in extents.iter_mut().zip(slice.direction.iter().zip(&*lengths)) {
+                        *extent = direction.abs() * length;
+                        center += 0.5 * direction * length;
+                    }
+                    uniform_bins(center, &mut extents[..dims], range, means, density);
                 };
                 let bins = Bins { write, uniform: true };
                 let energy = transport(slice, lengths, coordinates, bins, offsets, memory);

@@ -21,13 +21,13 @@ fn put_rows<const WIDTH: usize, const ROWS: usize>(
                 out[row % ROWS][lane % LANES] = *number;
             }
         };
+        // One, or four, without a look for each whether it is there: 1.5 to 6 % fewer instructions of a fit.
         if taken.len() == 1 {
             rows.get(first).into_iter().for_each(|numbers| put(taken.start, numbers));
             continue;
         }
         let rows = from(rows, first);
         match rows.first_chunk::<AT_ONCE>() {
-            // Four, without a look for each whether it is there: 1.5 to 6 % fewer instructions of a fit.
             Some(rows) if taken.len() == AT_ONCE => {
                 rows.iter().enumerate().for_each(|(row, numbers)| put(row, numbers));
             }
@@ -99,8 +99,10 @@ impl Call<'_> {
             3 => put_rows::<3, ROWS>(rows, &which, taken, out),
             _ => put_rows::<4, ROWS>(rows, &which, taken, out),
         }
-        let divided = if self.image.factors.is_empty() { 0 } else { self.config.channels };
-        for (channel, values) in out.iter_mut().enumerate().take(divided) {
+        if self.image.factors.is_empty() {
+            return;
+        }
+        for (channel, values) in out.iter_mut().enumerate().take(self.config.channels) {
             for values in part_mut(values, taken.start, taken.len()) {
                 self.divide_by_factors(pixels, channel, values);
             }
